@@ -2,8 +2,8 @@
 Tetrahedra that follow a heat source
 ====================================
 
-A laser moves over a plate. The mesh is fine where the source is and coarse where it was: each step coarsens and
-smooths the tetrahedra far from the source, and refines those near it.
+A laser moves over a plate. The mesh is fine where the source is, and becomes coarse again where it was: each step coarsens the
+tetrahedra far from the source, smooths the mesh, and refines the tetrahedra near the source.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -19,9 +19,9 @@ plate = delone.ConvexHull(corners)
 mesh = delone.tetrahedralize(plate.points, plate.simplices, size=0.5, boundary="surface")
 
 # %%
-# :meth:`~delone.TetMesh.coarsen` removes added points inside, where no dihedral angle falls below a bound; one call never
-# removes two neighbors, so it is repeated, and :meth:`~delone.TetMesh.smooth` moves the points that are left in between.
-# :meth:`~delone.TetMesh.refine` then makes marked tetrahedra smaller, and removes slivers up to 20 degrees.
+# :meth:`~delone.TetMesh.coarsen` removes added interior points as long as no dihedral angle falls below a bound. A single call
+# never removes two neighbors, so it is repeated, and after each call :meth:`~delone.TetMesh.smooth` moves the remaining points.
+# Then :meth:`~delone.TetMesh.refine` makes marked tetrahedra smaller and removes slivers, with a goal of 20 degrees.
 
 
 def near(mesh: delone.TetMesh, source: np.ndarray, radius: float) -> np.ndarray:
@@ -43,8 +43,8 @@ for x in (1.0, 2.0, 3.0):
     print(f"source at {x}: {mesh.nsimplex:6,} tetrahedra, smallest dihedral angle {angle:.1f}")
 
 # %%
-# The edges in the middle of the plate, seen from above, after each step. Where the source was, the mesh becomes coarse
-# again. Points on the surface stay.
+# After each step, the edges halfway through the thickness of the plate, seen from above. Where the source was, the mesh becomes
+# coarse again. Points on the surface are not removed.
 
 figure, axes = plt.subplots(3, 1, figsize=(7, 9), sharex=True, layout="constrained")
 for ax, (source, mesh) in zip(axes, steps, strict=True):

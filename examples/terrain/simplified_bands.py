@@ -2,8 +2,8 @@
 Height bands with fewer points
 ==============================
 
-The areas between contours of a rough surface, with all points of their borders and with a tenth of them. The polygons still
-share their borders, so nothing is between them, and they do not overlap.
+The areas between the contours of a rough surface, once with all points of their borders and once with a tenth of them. Adjacent
+polygons still share their borders, so they neither overlap nor leave gaps.
 
 Install: ``pip install "delone[plot,geo]"``.
 """
@@ -15,8 +15,8 @@ import shapely
 from delone.terrain import TIN
 
 # %%
-# Two hills, measured at random points with an error of up to 0.5 m. Borders of bands have a point on each edge of a
-# triangle that they cross.
+# Two hills, measured at random points with an error of up to 0.5 m. The border of a band has a point on each triangle edge that
+# it crosses.
 
 random = np.random.default_rng(8)
 xy = random.random((12_000, 2)) * 200
@@ -26,8 +26,8 @@ hills += 12 * np.exp(-((x - 150) ** 2 + (y - 50) ** 2) / 800)
 tin = TIN.from_points(np.column_stack((xy, hills + 0.5 * random.random(len(xy)))))
 
 # %%
-# ``min_area`` merges small polygons into those around them. ``simplify`` leaves out points that are within a distance of
-# the border that remains, here 1.5 m.
+# ``min_area`` merges small polygons into those around them. ``simplify`` leaves out points that are within a given distance of
+# the simplified border, here 1.5 m.
 
 every = tin.bands(interval=2, min_area=20)
 few = tin.bands(interval=2, min_area=20, simplify=1.5)
@@ -35,7 +35,7 @@ for bands in (every, few):
     print(bands, f"with {len(np.unique(bands.points, axis=0))} points")
 
 # %%
-# A common mistake is to simplify each polygon by itself. Two neighbors then get different borders, and overlap.
+# A common mistake is to simplify each polygon by itself. Neighbors then get different borders and overlap.
 
 
 def overlap(polygons):
@@ -51,7 +51,7 @@ assert shapely.is_valid(together).all()
 assert abs(overlap(together)) < 1e-6 < overlap(alone)
 
 # %%
-# A part of both, with borders in black. At the outline of the surface, all points stay.
+# Part of both maps, with borders in black. On the outline of the surface, all points stay.
 
 figure, axes = plt.subplots(1, 2, figsize=(10.5, 4.8), layout="constrained", sharey=True)
 for ax, bands, title in zip(axes, (every, few), ("All points", "simplify=1.5"), strict=True):

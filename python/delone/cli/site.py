@@ -107,7 +107,7 @@ def terrain(
         list[str] | None,
         typer.Option(
             metavar="HEIGHT|FILE",
-            help="Volumes above and below this height or surface, on the page; once or more.",
+            help="Volumes above and below this height or surface, on the page; can be repeated.",
         ),
     ] = None,
     smooth: Annotated[int, typer.Option(help="As for contours.")] = 0,
@@ -195,7 +195,7 @@ def _wanted(folder: Path, given: dict[str, Any], shades: list[str]) -> list[_Pro
 
 
 def _volumes(texts: list[str], heights: dict[str, float | None]) -> list[_Product]:
-    """Return the volumes to heights and surfaces; names are needed if there are several."""
+    """Return the volumes to heights and surfaces; if there are several, each has a name."""
     names = _distinct([Path(text).stem if heights[text] is None else text for text in texts])
     found = []
     for text, name in zip(texts, names, strict=True):
@@ -206,11 +206,11 @@ def _volumes(texts: list[str], heights: dict[str, float | None]) -> list[_Produc
 
 
 def _distinct(given: list[str]) -> list[str]:
-    """Return names with a number behind those that were there before."""
+    """Return the names, with a number appended to repeated ones."""
     names: list[str] = []
     for stem in given:
         name, number = stem, 2
-        # Ends, since the names are finitely many.
+        # Terminates, because there are finitely many names.
         while name in names:
             name, number = f"{stem} {number}", number + 1
         names.append(name)
