@@ -57,7 +57,7 @@ def difference(
             "--output",
             "-o",
             metavar="OUTPUT",
-            help="Raster or picture of the differences, once or more: "
+            help="Raster or picture of the differences (can be repeated): "
             + " ".join(raster_suffixes()),
         ),
     ] = None,

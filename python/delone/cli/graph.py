@@ -109,7 +109,7 @@ def graph(
         list[Path] | None,
         typer.Option(
             metavar="FILE",
-            help="File to write, once or more: the points with all columns and their rows, to "
+            help="File to write (can be repeated): the points with all columns and their rows, to "
             "which v0 and v1 of edges refer: " + " ".join(ROW_SUFFIXES),
         ),
     ] = None,

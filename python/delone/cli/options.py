@@ -39,7 +39,7 @@ __all__ = [
 
 def outputs(what: str, suffixes: Iterable[str]) -> Any:
     """Return the option --output for a command that writes files of one kind."""
-    text = f"{what}, once or more: " + " ".join(suffixes)
+    text = f"{what} (can be repeated): " + " ".join(suffixes)
     return typer.Option("--output", "-o", metavar="OUTPUT", help=text)
 
 

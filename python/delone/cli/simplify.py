@@ -46,7 +46,7 @@ def simplify(
         typer.Option(help="Largest vertical distance of a point from the new surface."),
     ] = None,
     max_triangles: Annotated[
-        int | None, typer.Option(help="Number of triangles, instead of --max-error.")
+        int | None, typer.Option(help="Maximum number of triangles, instead of --max-error.")
     ] = None,
     keep: Annotated[str, typer.Option(help="Edges that stay: " + ", ".join(KEEP) + ".")] = _KEEP,
     prove: Annotated[

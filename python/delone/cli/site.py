@@ -101,7 +101,7 @@ def terrain(
     ] = False,
     profile: Annotated[
         list[Path] | None,
-        typer.Option(help="File with one line, once or more: profile-NAME.csv, with a picture."),
+        typer.Option(help="File with one line: profile-NAME.csv, with a picture; can be repeated."),
     ] = None,
     volume: Annotated[
         list[str] | None,

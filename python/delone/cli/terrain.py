@@ -222,7 +222,7 @@ def profile(
     *,
     other: Annotated[
         list[Path] | None,
-        typer.Option(help="File of another surface, once or more, such as a design."),
+        typer.Option(help="File of another surface, such as a design; can be repeated."),
     ] = None,
     other_layer: Annotated[
         list[str] | None,

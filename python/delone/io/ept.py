@@ -122,7 +122,7 @@ def read_points(
     if box is None and total != tree.count:
         raise FileFormatError(
             f"{path} declares {tree.count} points, and its nodes have {total}: give bounds to read "
-            "what the nodes have"
+            "the points of the nodes"
         )
     read = _read_packed if tree.data == "laszip" else _read_records
     parts = [
@@ -299,7 +299,7 @@ def _tree(path: Path) -> _Tree:
     if not (isinstance(data, str) and data in _ENDINGS):
         raise FileFormatError(
             f"{path}: nodes of type {data!r:.40} are not read, only laszip and binary: convert it, "
-            "such as with Entwine"
+            "for example with Entwine"
         )
     if content.get("hierarchyType", "json") != "json":
         raise FileFormatError(

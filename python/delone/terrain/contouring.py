@@ -462,7 +462,7 @@ class Bands(ReadOnly, Filed, Layer):
         -----
         Polygons share their vertices and do not overlap. `shapely.coverage_is_valid` may be False
         nevertheless: it examines the rings of a polygon one by one, so at a vertex where a hole
-        touches its outer ring, it takes what is beside the polygon for a part of it.
+        touches its outer ring, it treats the area next to the polygon as part of it.
 
         Examples
         --------

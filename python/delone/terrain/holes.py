@@ -1,13 +1,14 @@
 """Holes of polygons between contours, each in the polygon around it.
 
-Where the resolution of coordinates is coarse, points of contours are united, and a narrow part of a
+Where the resolution of coordinates is coarse, points of contours are merged, and a narrow part of a
 band becomes a point: one polygon becomes several that touch. The core returns these one after
-another, and attributes all of their holes to the last one. Here, holes of such polygons are
-compared with the outer ring, exactly, and attributed to the innermost one around them.
+another, and assigns all of their holes to the last one. Here, such holes are compared with the
+outer rings, exactly, and each is assigned to the innermost polygon around it.
 
-A hole is represented by a point just to the right of its leftmost vertex, inside of the hole. It is
-inside of a ring if an odd number of sides of the ring are below it. Rings and holes never cross, so
-a side through that vertex is below the point if a side of the hole at the vertex is above the side.
+A hole is represented by a point just to the right of its leftmost vertex, inside the hole. The
+point is inside a ring if an odd number of sides of the ring are below it. Rings and holes never
+cross, so a side through that vertex is below the point if a side of the hole at the vertex is above
+the side.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ _PAIRS = 1 << 20
 
 
 def with_holes_inside(given: Rings, band: Rows) -> Rings:
-    """Return the same polygons, each with the holes that are inside of its outer ring."""
+    """Return the same polygons, each with the holes that are inside its outer ring."""
     owner = np.repeat(np.arange(len(band)), np.diff(given.polygons))
     outer = np.zeros(len(owner), dtype=bool)
     outer[given.polygons[:-1]] = True
@@ -48,9 +49,9 @@ def with_holes_inside(given: Rings, band: Rows) -> Rings:
 
 
 def _doubtful(given: Rings, band: Rows, owner: Rows) -> Rows:
-    """Return the holes that could be inside of polygons without holes before theirs in the band."""
+    """Return the holes that may belong to an earlier polygon of the band, one without holes."""
     counts = np.diff(given.polygons)
-    # Of each polygon, the first one of those before it; none is before a polygon without holes.
+    # For each polygon with holes, the first of the polygons without holes just before it.
     begin = np.searchsorted(band, band)
     last = np.flatnonzero(counts > 1)
     begin[last] = np.maximum(begin[last], np.concatenate(([0], last[:-1] + 1)))
@@ -60,7 +61,7 @@ def _doubtful(given: Rings, band: Rows, owner: Rows) -> Rows:
     low = np.minimum.reduceat(given.points, given.rings[:-1], axis=0)
     high = np.maximum.reduceat(given.points, given.rings[:-1], axis=0)
     first = given.polygons[:-1]
-    # The box around all of those before a polygon; boxes between are of other polygons.
+    # The box around all polygons before each; every other result of reduceat is not needed.
     runs = np.stack((begin[last], last), axis=1).ravel()
     left = np.full((len(band), 2), np.inf)
     right = -left
@@ -71,7 +72,7 @@ def _doubtful(given: Rings, band: Rows, owner: Rows) -> Rows:
 
 
 def _outer_points(given: Rings, polygons: Rows) -> tuple[Rows, Rows]:
-    """Return the positions of the points of outer rings, the last ones left out, and the ring."""
+    """Return the positions of the points of outer rings, without the last ones, and the ring."""
     starts = given.rings[given.polygons[polygons]]
     sizes = given.rings[given.polygons[polygons] + 1] - starts - 1
     ring = np.repeat(np.arange(len(polygons)), sizes)
@@ -95,7 +96,7 @@ def _corners(given: Rings, holes: Rows) -> Floats:
 
 
 def _inside(given: Rings, polygon: Rows, corners: Floats) -> Bools:
-    """Return whether each hole is inside of the outer ring of a polygon.
+    """Return whether each hole is inside the outer ring of a polygon.
 
     Sides are sorted into strips by x, so that each hole meets the sides of one strip.
     """
@@ -107,11 +108,11 @@ def _inside(given: Rings, polygon: Rows, corners: Floats) -> Bools:
     first = np.cumsum(strips) - strips
     start = np.cumsum(count) - count
     low, high = np.minimum.reduceat(a[:, 0], start), np.maximum.reduceat(b[:, 0], start)
-    # Halves, so that the largest coordinates do not overflow.
+    # Coordinates are halved, so that the largest ones do not overflow.
     width = np.maximum(high / 2 - low / 2, np.finfo(float).tiny)
 
     def strip(x: Floats, ring: Rows) -> Rows:
-        """Return strips, monotone in x: a side is in those of all places above or below it."""
+        """Return strips, monotone in x: a side is in the strips of all places above or below it."""
         share = np.clip((x / 2 - low[ring] / 2) / width[ring], 0.0, 1.0)
         within = np.floor(share * strips[ring]).astype(np.int64)
         found: Rows = first[ring] + np.minimum(within, strips[ring] - 1)
@@ -129,7 +130,7 @@ def _inside(given: Rings, polygon: Rows, corners: Floats) -> Bools:
     below = np.zeros(len(polygon), dtype=np.int64)
     done = np.cumsum(sizes)
     begin = 0
-    # Each block has at least one hole, so this ends.
+    # Each block has at least one hole, so this terminates.
     while begin < len(polygon):
         before = done[begin - 1] if begin else 0
         end = max(begin + 1, int(np.searchsorted(done, before + _PAIRS, side="right")))
@@ -174,13 +175,13 @@ def _around(given: Rings, polygons: Rows, corner: Floats) -> int:
     around = polygons[np.bincount(of[meets], minlength=len(polygons)) % 2 == 1]
     if not len(around):
         raise InternalError("a hole between contours is in no polygon")
-    # Outer rings around the same hole are one in another, because they do not cross.
+    # Outer rings around the same hole are nested, because they do not cross.
     rows: list[int] = around.tolist()
     return min(rows, key=lambda row: _area(given, row))
 
 
 def _area(given: Rings, polygon: int) -> Fraction:
-    """Return twice the area inside of an outer ring, exactly."""
+    """Return twice the area inside an outer ring, exactly."""
     ring = int(given.polygons[polygon])
     points = given.points[given.rings[ring] : given.rings[ring + 1]].tolist()
     exact = [(Fraction(x), Fraction(y)) for x, y in points]

@@ -60,18 +60,18 @@ def as_held(fixed: ArrayLike | None, count: int) -> Bools:
 
 
 class Points(NamedTuple):
-    """What may happen to points: masks, or empty arrays for none."""
+    """Which points may move and which may be removed: masks, or empty arrays for none."""
 
     # Those that must not move.
     held: Bools
     # Those that may be removed.
     removable: Bools
-    # From this row on, points were added, and the rows of removed ones are left out.
+    # Points from this row on were added; if they are removed, their rows are left out.
     added: int
 
     @classmethod
     def free(cls, count: int) -> Points:
-        """Return that points may move and not vanish."""
+        """Return masks for points that may all move, and none of which may be removed."""
         none = np.empty(0, dtype=bool)
         return cls(none, none, count)
 
@@ -110,7 +110,7 @@ def coarsened(
 def smoothed(
     mesh: tuple[Floats, Indices, Indices], of_points: Points, goal: float, how: tuple[str, int]
 ) -> tuple[Changed, ImproveReport, TetQuality]:
-    """Move points of ``(points, simplices, labels)``; `how` are (method, rounds)."""
+    """Move points of ``(points, simplices, labels)``; `how` is (method, rounds)."""
     held = of_points.held
     return _judged(mesh, of_points, goal, lambda: _core.smooth3(*mesh, held, goal, *how))
 

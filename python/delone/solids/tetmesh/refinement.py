@@ -331,7 +331,7 @@ def _continued(state: _State, made: RefinedTetrahedra) -> _State:
 
 
 def _improved(state: _State, goal: float, left: int) -> tuple[_State, ImproveReport]:
-    """Return a mesh with better tetrahedra and at most `left` more points, and how it was made."""
+    """Return a mesh with better tetrahedra and at most `left` more points, and the report."""
     neighbors = _core.facet_neighbors(state.simplices, len(state.points))
     kept = Kept.of(state.simplices, neighbors, state.faces, state.labels)
     free = improving.Points.free(len(state.points))

@@ -43,7 +43,7 @@ def coarsened(mesh: Any, marked: ArrayLike | None, min_angle: float | None) -> A
 def smoothed(
     mesh: Any, how: tuple[int, str], fixed: ArrayLike | None, min_angle: float | None
 ) -> Any:
-    """Return a mesh whose inner points have moved; `how` are max_iter and method."""
+    """Return a mesh whose interior points have moved; `how` is (max_iter, method)."""
     limit, method = how
     how_often = as_limit(limit, name="max_iter")
     target = as_choice(method, METHODS, name="method")
@@ -56,7 +56,7 @@ def smoothed(
 
 
 def mesh_of(mesh: Any, kept: Kept, made: Changed, judged: ImproveReport, after: TetQuality) -> Any:
-    """Return the mesh that was made of a TetMesh, whose input faces it has."""
+    """Return the mesh made from a TetMesh, with the same input faces."""
     names = "face_source", "face_markers", "holes"
     better = type(mesh)._of(
         {
@@ -64,7 +64,7 @@ def mesh_of(mesh: Any, kept: Kept, made: Changed, judged: ImproveReport, after: 
             "simplices": made.simplices,
             "neighbors": made.neighbors,
             "region": kept.own[made.labels],
-            # Their corners may be points that were added behind removed ones.
+            # Their corners may be added points that come after removed ones.
             "input_faces": made.renumbered(mesh.input_faces),
             **{name: getattr(mesh, name) for name in names},
         },
@@ -77,7 +77,7 @@ def mesh_of(mesh: Any, kept: Kept, made: Changed, judged: ImproveReport, after: 
 
 
 def _goal(mesh: Any, given: float | None) -> float:
-    """Return the bound on angles: the one that was asked for, or the goal of the mesh."""
+    """Return the bound on angles: the given one, or else the goal of the mesh."""
     if given is not None:
         return improving.as_goal(given)
     report = mesh.report

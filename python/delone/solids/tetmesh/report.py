@@ -43,7 +43,7 @@ _BAR = 40
 
 
 class Changed(NamedTuple):
-    """Tetrahedra that the core has changed, in the rows that are left."""
+    """Tetrahedra that the core has changed, with the rows of the remaining points."""
 
     points: Floats
     simplices: Indices
@@ -52,12 +52,12 @@ class Changed(NamedTuple):
     weights: Floats
     counts: ImprovementCounts
     exhausted: bool
-    # Which rows of the core are left.
+    # Which rows of the core remain.
     left: Bools
 
     @classmethod
     def of(cls, made: ImprovedMesh, added: int) -> Changed:
-        """Return a mesh of the core without removed points among the rows from `added` on."""
+        """Return a mesh of the core, without the points from row `added` on that were removed."""
         points, simplices, weights = made.points, made.simplices, made.weights
         left = np.ones(len(points), dtype=bool)
         if made.counts.removed:
@@ -68,7 +68,7 @@ class Changed(NamedTuple):
         return cls(points[left], number[simplices], *rest, left)
 
     def renumbered(self, rows: Indices) -> Indices:
-        """Return rows of the core, none of which was removed, as rows of these points."""
+        """Convert rows of the core, none of them removed, to rows of these points."""
         return _number(self.left)[rows]
 
 
