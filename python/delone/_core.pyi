@@ -756,13 +756,13 @@ class Halfspaces:
         """The corner of each simplex, (m,)."""
     @property
     def facets(self) -> NDArray[np.int32]:
-        """Half-spaces that meet in each corner, one corner after another, (k,)."""
+        """Half-spaces that meet at each corner, one corner after another, (k,)."""
     @property
     def starts(self) -> NDArray[np.int32]:
         """Start of the half-spaces of each corner, and the end, (c + 1,)."""
     @property
     def points(self) -> NDArray[np.float64]:
-        """The corners, infinite where there is none, (c, d)."""
+        """The corners, infinite where the intersection is unbounded, (c, d)."""
     @property
     def equations(self) -> NDArray[np.float64]:
         """Outer unit normals and offsets of the dual points of each corner, (c, d + 1)."""
@@ -1755,8 +1755,8 @@ def coarsen3(
     removable: NDArray[np.bool_],
     min_angle: float,
 ) -> ImprovedMesh:
-    """Removes some vertices, no two of which are neighbors, as far as no angle falls below
-    the bound or, if it is below already, becomes smaller.
+    """Removes vertices, no two of which are neighbors, if no angle falls below the bound,
+    and none that is already below it becomes smaller.
     """
 
 def combine2(
@@ -1976,8 +1976,8 @@ def halfspaces(
     rows: NDArray[np.float64], point: NDArray[np.float64]
 ) -> tuple[Halfspaces | None, str, NDArray[np.int32]]:
     """The intersection of half-spaces `a x + b <= 0` around a point, in two to eight
-    dimensions. Without corners: "not inside" or "too close", with the row of a half-
-    space, or "flat", with those that span all.
+    dimensions. If it has no corners: "not inside" or "too close", with the row of a
+    half-space, or "flat", with the rows that span all.
     """
 
 def hull2(points: NDArray[np.float64]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:

@@ -53,7 +53,7 @@ pub struct ImprovedMesh {
     pub exhausted: bool,
 }
 
-/// The arrays of a mesh that is to be changed.
+/// The arrays of a mesh to change.
 struct Given<'py> {
     points: PyReadonlyArray2<'py, f64>,
     simplices: PyReadonlyArray2<'py, i32>,
@@ -63,7 +63,7 @@ struct Given<'py> {
 }
 
 impl Given<'_> {
-    /// A task without any kind of changes, after a check of the arrays.
+    /// A task without any changes, after checking the arrays.
     fn task(&self, min_angle: f64) -> Result<Task<'_>> {
         let points = rows(&self.points, "points")?;
         let simplices = rows(&self.simplices, "simplices")?;
@@ -85,8 +85,8 @@ impl Given<'_> {
     }
 }
 
-/// Removes some vertices, no two of which are neighbors, as far as no angle falls below the bound or, if
-/// it is below already, becomes smaller.
+/// Removes vertices, no two of which are neighbors, if no angle falls below the bound, and none that is
+/// already below it becomes smaller.
 #[pyfunction]
 pub fn coarsen3<'py>(
     py: Python<'py>,

@@ -73,21 +73,22 @@ pub struct Halfspaces {
     pub simplices: Table<i32>,
     /// The corner of each simplex, (m,).
     pub corner_of: Column<i32>,
-    /// Half-spaces that meet in each corner, one corner after another, (k,).
+    /// Half-spaces that meet at each corner, one corner after another, (k,).
     pub facets: Column<i32>,
     /// Start of the half-spaces of each corner, and the end, (c + 1,).
     pub starts: Column<i32>,
-    /// The corners, infinite where there is none, (c, d).
+    /// The corners, infinite where the intersection is unbounded, (c, d).
     pub points: Table<f64>,
     /// Outer unit normals and offsets of the dual points of each corner, (c, d + 1).
     pub equations: Table<f64>,
 }
 
-/// An intersection, or None and why there is none, with rows.
+/// An intersection, or None, the reason, and the rows that cause it.
 type Intersected = (Option<Halfspaces>, &'static str, Column<i32>);
 
-/// The intersection of half-spaces `a x + b <= 0` around a point, in two to eight dimensions. Without
-/// corners: "not inside" or "too close", with the row of a half-space, or "flat", with those that span all.
+/// The intersection of half-spaces `a x + b <= 0` around a point, in two to eight dimensions. If it has
+/// no corners: "not inside" or "too close", with the row of a half-space, or "flat", with the rows that
+/// span all.
 #[pyfunction]
 pub fn halfspaces(
     py: Python<'_>,

@@ -350,7 +350,7 @@ fn refined() -> Outcome {
     Ok(())
 }
 
-/// Tetrahedra without slivers where that can be.
+/// Tetrahedra with as few slivers as possible.
 fn improved() -> Outcome {
     let watch = &Watch::idle();
     let points: Vec<Point3> = uniform(250);
@@ -379,7 +379,7 @@ fn higher() -> Outcome {
     Ok(())
 }
 
-/// The areas that the cells of two grids of a cube's sides share on the sphere, one of them turned.
+/// The areas that the cells of two cubed-sphere grids share, one of which is rotated.
 fn shared() -> Outcome {
     let cells = |n: u32, turn: bool| {
         let at = |k: u32| f64::from(2 * k) / f64::from(n) - 1.0;

@@ -108,8 +108,8 @@ pub fn invert<const D: usize, const P: usize>(a: &Matrix<D, P>) -> Inverse<D, P>
     judged(a, b)
 }
 
-/// The same for small matrices by cofactors, without branches: less accurate for thin simplices, which
-/// the bounds say.
+/// The same for small matrices by cofactors, without branches: less accurate for thin simplices, as the
+/// bounds show.
 #[inline(always)]
 pub fn invert_small<const D: usize, const P: usize>(a: &Matrix<D, P>) -> Inverse<D, P> {
     let mut b = [[0.0; P]; D];

@@ -488,7 +488,7 @@ fn a_vertex_is_removed_only_if_it_may_be() {
         ..task(&points, &simplices)
     };
     assert_eq!(coarsen(all, &Watch::idle()).unwrap().counts.removed, 0);
-    // One vertex inside.
+    // One interior vertex.
     let only: Vec<bool> = points
         .iter()
         .map(|p| p.iter().all(|x| (x - 2.0).abs() < 0.3))

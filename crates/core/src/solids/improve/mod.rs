@@ -1,5 +1,5 @@
 //! Improves tetrahedral meshes: edge and face removal, smoothing, edge contraction and vertex insertion,
-//! as long as the worst tetrahedron improves. `relax` coarsens and smooths them instead.
+//! as long as the worst tetrahedron improves. `relax` coarsens and smooths meshes instead.
 //!
 //! L. A. Freitag and C. Ollivier-Gooch, "Tetrahedral mesh improvement using swapping and
 //! smoothing", International Journal for Numerical Methods in Engineering 40 (1997); J. R.
@@ -71,7 +71,7 @@ pub fn relax(task: Task, target: Target, watch: &Watch) -> Result<Improved> {
     })
 }
 
-/// Imports tetrahedra, changes them and exports them; `change` says whether it came to its end.
+/// Imports tetrahedra, changes them and exports them; `change` returns whether it was completed.
 fn changed<'a>(
     task: Task<'a>,
     change: impl FnOnce(&mut work::Work<'a>) -> Result<bool>,

@@ -15,7 +15,7 @@ pub struct Task<'a> {
     pub labels: &'a [i32],
     /// For each row, whether it is fixed. Empty if none is.
     pub fixed: &'a [bool],
-    /// For each row, whether it may be removed, unless it is fixed or at a wall. Empty if none may.
+    /// For each row, whether it may be removed if it is not fixed or on a wall. Empty if none may.
     pub removable: &'a [bool],
     /// Tetrahedra with a smaller dihedral angle, in degrees, are improved; so are those with an
     /// obtuse angle of a smaller weighted sine.

@@ -1,5 +1,5 @@
 //! The passes: removals for each tetrahedron below the bound, worst first; then moves of vertices;
-//! and, when these gain little, fewer and new vertices.
+//! and, when these gain little, removed and new vertices.
 
 use delone_predicates::Point3;
 
@@ -117,9 +117,8 @@ impl<'a> Work<'a> {
         if self.task.exude {
             self.weigh_all(watch)?;
         }
-        // First without a change of the number of vertices, as long as that gains; then vertices are
-        // removed and added at the worst tetrahedra, and at less bad ones when those gain nothing
-        // more.
+        // The number of vertices does not change at first, as long as that improves the mesh. Then
+        // vertices are removed and added at the worst tetrahedra, and finally at less bad ones.
         let mut ended = self.run_passes(None, watch, tell)?;
         for level in LEVELS {
             if ended && (self.removes || self.counts.added < self.task.most) {
@@ -277,8 +276,8 @@ impl<'a> Work<'a> {
         Ok(true)
     }
 
-    /// Replaces tetrahedra if the new ones are positive and `good`, given their bounds and those of the
-    /// old ones.
+    /// Replaces tetrahedra if the new ones are positive, and `good` accepts their bounds, given those of
+    /// the old ones.
     pub(super) fn carry_out(
         &mut self,
         plan: &Plan,
@@ -305,13 +304,13 @@ impl<'a> Work<'a> {
         Ok(true)
     }
 
-    /// Whether a vertex may be removed, and is there.
+    /// Whether a vertex still exists and may be removed.
     pub(super) fn may_vanish(&self, v: u32) -> bool {
         let fixed = self.store.fixed[v as usize];
         self.removable[v as usize] && !fixed && self.store.is_used(v)
     }
 
-    /// Counts a vertex that no tetrahedron uses anymore.
+    /// Counts a vertex that has been removed.
     pub(super) fn vanished(&mut self, v: u32) {
         self.store.at[v as usize] = NONE;
         self.counts.removed += 1;
@@ -322,7 +321,7 @@ impl<'a> Work<'a> {
         let mut steps = 0;
         for t in self.below(level)? {
             for k in 0..4 {
-                // A slot that was reused now has other corners.
+                // If the slot was reused, its corners differ.
                 if !self.is_below(t, level) {
                     break;
                 }
@@ -342,7 +341,7 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// Removes a vertex if the tetrahedra are certainly better without it.
+    /// Removes a vertex if the tetrahedra without it are certainly better.
     fn contract_one(&mut self, v: u32) -> Result<()> {
         self.store.star(v, &mut self.around)?;
         let qualities = self.around.iter().map(|&t| self.store.quality[t as usize]);
@@ -499,8 +498,8 @@ impl<'a> Work<'a> {
         Ok(moved)
     }
 
-    /// Moves a vertex, whose tetrahedra are `around`, if these are then positive and `good`, given
-    /// their bounds and those before.
+    /// Moves a vertex, whose tetrahedra are `around`, if these stay positive, and `good` accepts their
+    /// bounds, given those before.
     pub(super) fn try_move(
         &mut self,
         v: u32,
