@@ -21,7 +21,7 @@ METHODS = ["lloyd", "odt", "laplace"]
 
 
 def boxes(size: float, **options: Any) -> TetMesh:
-    """Two boxes on each other, of regions 1 and 2, with a marker for each side."""
+    """Two stacked boxes, regions 1 and 2, with a marker for each side."""
     low, high = CORNERS * [2, 2, 1], CORNERS * [2, 2, 1] + [0, 0, 1]
     points = np.unique(np.concatenate((low, high)), axis=0)
     row = {tuple(p): i for i, p in enumerate(points.tolist())}
@@ -152,7 +152,7 @@ def test_smooth_meshes_have_the_same_regions_and_faces(method: str) -> None:
 
 
 def one_inside(at: tuple[float, float, float]) -> TetMesh:
-    """A cube around one point, which is not where its neighbors want it."""
+    """A cube around one point, which is not at the mean of its neighbors."""
     points = np.concatenate((CORNERS, [at]))
     return delone.improve(
         (points, delone.Delaunay(points).simplices), min_angle=0, flips=False, smooth=False

@@ -50,7 +50,7 @@ def is_inside(ring, x, y):
 
 
 def require_one_polygon_at_each_place(found, seed, count=40):
-    """At places inside of the surface, one polygon has a ring around, and none has a hole alone."""
+    """Each place is in one polygon at most, and in a hole only if the ring around it has it, too."""
     random = np.random.default_rng(seed)
     polygons = polygons_of(found)
     low, high = found.points.min(axis=0), found.points.max(axis=0)
@@ -73,7 +73,7 @@ def require_one_polygon_at_each_place(found, seed, count=40):
 
 
 def moved(tin, **options):
-    """Return bands, and how often a hole is found that the core has attributed to another ring."""
+    """Return bands, and how many holes the core has assigned to the wrong ring."""
     calls = []
     from delone.terrain import holes
 
@@ -130,7 +130,7 @@ def as_lists(*polygons):
 
 
 def test_holes_go_to_the_innermost_ring_around_them():
-    # The third is inside of a hole of the second. All holes are with the last of the band.
+    # The third is inside a hole of the second. The core assigns all holes to the last of the band.
     outer = [box(0, 0, 4), box(4, 0, 20), box(8, 4, 8)]
     holes = [hole(1, 1, 1), hole(7, 3, 10), hole(9, 5, 2), hole(20, 1, 1), hole(12, 8, 2)]
     given = rings_of([outer[0]], [outer[1]], [outer[2], *holes])
@@ -138,7 +138,7 @@ def test_holes_go_to_the_innermost_ring_around_them():
     assert lists(found) == as_lists(
         [outer[0], holes[0]], [outer[1], holes[1], holes[3]], [outer[2], holes[2], holes[4]]
     )
-    # The second is inside of the first, and the hole inside of both.
+    # The second is inside the first, and the hole is inside both.
     outer = [box(0, 0, 20), box(2, 2, 9), box(30, 0, 4)]
     holes = [hole(3, 3, 1), hole(1, 1, 11)]
     found = with_holes_inside(rings_of([outer[0]], [outer[1]], [outer[2], *holes]), np.zeros(3))

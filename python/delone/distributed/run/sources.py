@@ -193,7 +193,7 @@ def _look(path: Path, choice: Choice) -> tuple[str, int, str | None, bool]:
             raise FileFormatError(f"{path}: LAS files always have the coordinates x, y and z")
         return "las", *las.look(path, attributes=choice.attributes), True
     if choice.classes is not None:
-        raise FileFormatError(f"{path}: only LAS and LAZ files have classes")
+        raise FileFormatError(f"{path}: tiles can select classes from LAS and LAZ files only")
     if suffix == ".parquet" and not parquet.holds_geometries(path):
         rows, z = parquet.look(path, columns=choice.columns, attributes=choice.attributes)
         return "parquet", rows, None, z
