@@ -1,6 +1,6 @@
 """Convex hulls, intersections of half-spaces, and 3-D point location, side by side with SciPy.
 
-One thread for SciPy, which has no more; delone's hulls work on one, its location on one and on all.
+SciPy uses one thread, as do delone's hulls; delone's point location uses one thread, and then all.
 Medians of warm calls, which take turns. ``python benchmarks/hull.py --help`` has options.
 """
 

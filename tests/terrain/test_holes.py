@@ -50,7 +50,7 @@ def is_inside(ring, x, y):
 
 
 def require_one_polygon_at_each_place(found, seed, count=40):
-    """Each place is in one polygon at most, and in a hole only if the ring around it has it, too."""
+    """Each place is in at most one polygon, and in a hole only if inside its outer ring, too."""
     random = np.random.default_rng(seed)
     polygons = polygons_of(found)
     low, high = found.points.min(axis=0), found.points.max(axis=0)
