@@ -161,6 +161,25 @@ def test_classes_are_chosen(lidar: Any, tmp_path: Path, canonical: Callable[[Any
     assert np.array_equal(canonical(tin.read_simplices()), canonical(right))
 
 
+def test_a_piece_may_have_no_point_of_the_classes(
+    lidar: Any, tmp_path: Path, canonical: Callable[[Any], Any]
+) -> None:
+    import laspy
+
+    # The first file has ground points, the second one none.
+    for name, code in (("a.las", 2), ("b.las", 6)):
+        made = laspy.create(point_format=0, file_version="1.2")
+        made.header.scales = [0.01] * 3
+        some = slice(0, 400) if code == 2 else slice(400, 800)
+        made.x, made.y, made.z = *lidar.points[some].T, lidar.z[some]
+        made.classification = np.full(400, code, dtype=np.uint8)
+        made.write(tmp_path / name)
+    files = [tmp_path / "a.las", tmp_path / "b.las"]
+    tin = distributed.triangulate(files, tmp_path / "tin", tile_points=100, classes=[2])
+    right = Delaunay(read_points(files[0]).points)
+    assert np.array_equal(canonical(tin.read_simplices()), canonical(right.simplices))
+
+
 def test_torn_and_lying_lidar_files(lidar: Any, tmp_path: Path) -> None:
     whole = LIDAR.read_bytes()
     torn = tmp_path / "torn.laz"

@@ -34,7 +34,8 @@ def scatter(rows: Rows, layout: Layout) -> tuple[Rows, dict[str, Any]]:
     order = np.argsort(narrow, kind="stable")
     own, tile, corner = rows.take(order), tile.take(order), corner.take(order)
     first = np.flatnonzero(np.diff(tile, prepend=-1))
-    ends = np.append(first[1:], len(tile))
+    # No run, and so no end, in a piece without rows.
+    ends = np.append(first, len(tile))[1:]
     runs = [[int(tile[a]), int(a), int(b)] for a, b in zip(first, ends, strict=True)]
     columns = own["x"].copy(), own["y"].copy()
     boxes = []
