@@ -274,6 +274,35 @@ def test_refused_requests(tmp_path: Path) -> None:
     assert len(read_points(no_points)) == 0
 
 
+ENDS = [(1 << 53, True), ((1 << 53) + 1, False), ((1 << 63) - 1, False), ((1 << 64) - 1, False)]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("value, fits", [*ENDS, (-(1 << 53), True), (-(1 << 63), False)])
+def test_coordinates_that_doubles_would_round(tmp_path: Path, value: int, fits: bool) -> None:
+    kind = "i8" if value < 1 << 63 else "u8"
+    record = np.zeros(2, dtype=[(axis, kind) for axis in "XYZ"])
+    record["Y"][1] = value
+    file = write(tmp_path / "tiles", record, "binary")
+    (file.parent / "ept-hierarchy/0-0-0-0.json").write_text('{"0-0-0-0": 2}', encoding="utf-8")
+    record.tofile(file.parent / "ept-data/0-0-0-0.bin")
+    if fits:
+        assert read_points(file).points[1, 1] == value * SCALE
+        return
+    with pytest.raises(FileFormatError, match=r"beyond 2\*\*53"):
+        read_points(file)
+
+
+@pytest.mark.filterwarnings("error")
+def test_coordinates_that_are_signaling_nans(tmp_path: Path) -> None:
+    record = np.zeros(1, dtype=[(axis, "f4") for axis in "XYZ"])
+    file = write(tmp_path / "tiles", record, "binary")
+    quiet, signaling = 0x7FC00000, 0x7F800001
+    np.array([0, quiet, signaling], dtype="<u4").tofile(file.parent / "ept-data/0-0-0-0.bin")
+    found = read_points(file)
+    assert np.isnan(found.points).tolist() == [[False, True]] and np.isnan(found.z).all()
+
+
 CUBE = [0, 0, 0, 128, 128, 128]
 X = {"name": "X", "type": "signed", "size": 4}
 Y, Z = X | {"name": "Y"}, X | {"name": "Z"}
@@ -289,7 +318,8 @@ Y, Z = X | {"name": "Y"}, X | {"name": "Z"}
         ({"hierarchyType": "gzip"}, "a hierarchy of type 'gzip'"),
         ({"points": -1}, "declares -1 points"),
         ({"points": True}, "declares True points"),
-        ({"points": 10**30}, "nodes have 300: give bounds"),
+        ({"points": 10**18}, "nodes have 300: give bounds"),
+        ({"points": 10**30}, "is corrupt: it declares 10000"),
         ({"points": 299}, "declares 299 points, and its nodes have 300"),
         ({"bounds": CUBE[:5]}, "bounds"),
         ({"bounds": [0, 0, 0, 0, 128, 128]}, "bounds"),
@@ -306,6 +336,7 @@ Y, Z = X | {"name": "Y"}, X | {"name": "Z"}
         ({"schema": [X | {"type": ["float"]}, Y, Z]}, "a dimension of its schema"),
         ({"schema": [X | {"scale": 0}, Y, Z]}, "a dimension of its schema"),
         ({"schema": [X | {"offset": 10**400}, Y, Z]}, "a dimension of its schema"),
+        ({"schema": [X, Y, Z, X | {"name": "Red"}, X | {"name": "red"}]}, "a dimension twice"),
         ({"schema": [X, Y, Z]}, "and 40 points take 480"),
     ],
 )
@@ -337,6 +368,8 @@ def test_a_description_that_is_not_json(tmp_path: Path, text: str) -> None:
         (lambda page: page | {"0-0-0-0": None}, "has None points"),
         (lambda page: page | {"0-0-0-0": 41}, "and 41 points take"),
         (lambda page: page | {"0-0-0-0": 10**18}, "points take"),
+        # Python writes no numbers with more digits, such as the size of so many records.
+        (lambda page: page | {"0-0-0-0": 10**4299}, "is corrupt: node 0-0-0-0 has 10000"),
         (lambda page: page | {"1-2-0-0": 1}, "'1-2-0-0' is not in the octree"),
         (lambda page: page | {"1-0-0--1": 1}, "is not in the octree"),
         (lambda page: page | {"01-0-0-0": 1}, "is not in the octree"),

@@ -42,6 +42,8 @@ __all__ = ["describe", "read_points"]
 _KEY = re.compile("-".join(["(0|[1-9][0-9]{0,15})"] * 4))
 # The deepest level at which doubles can still distinguish the cubes.
 _DEEPEST = 50
+# The largest number of points, and the largest coordinate that doubles do not round.
+_MOST, _LARGEST = (1 << 64) - 1, 1 << 53
 _KINDS = {"signed": "i", "unsigned": "u", "float": "f"}
 _SIZES = {"signed": (1, 2, 4, 8), "unsigned": (1, 2, 4, 8), "float": (4, 8)}
 _ENDINGS = {"laszip": ".laz", "binary": ".bin"}
@@ -222,11 +224,13 @@ def _read_records(  # noqa: PLR0917
 
 def _scaled(file: Path, values: NDArray[Any], scale: float, offset: float) -> Floats:
     """Return coordinates; if bad scales make some infinite, these are rejected later."""
-    found = values.astype(np.float64)
-    if values.dtype.kind in "iu" and (found.astype(values.dtype) != values).any():
-        raise FileFormatError(f"{file} has coordinates beyond 2**53, which doubles would round")
+    if values.dtype.kind in "iu" and values.dtype.itemsize == 8:
+        # What is rounded up to the end of the range cannot be converted back.
+        lowest, highest = (int(end) for end in (values.min(initial=0), values.max(initial=0)))
+        if max(-lowest, highest) > _LARGEST:
+            raise FileFormatError(f"{file} has coordinates beyond 2**53, which doubles would round")
     with np.errstate(over="ignore", invalid="ignore"):
-        return found * scale + offset
+        return values.astype(np.float64) * scale + offset
 
 
 def _nodes(tree: _Tree, box: Box | None) -> dict[Key, int]:
@@ -256,7 +260,7 @@ def _page(tree: _Tree, root: Key) -> dict[Key, int]:
         key = _key(name)
         if key is None or _ancestor(key, root[0]) != root:
             raise FileFormatError(f"{file} is corrupt: {name!r:.80} is not in the octree below it")
-        if not _is_whole(count) or count < -1:
+        if not _is_whole(count) or not -1 <= count <= _MOST:
             raise FileFormatError(f"{file} is corrupt: node {name} has {count!r:.40} points")
         page[key] = count
     if page.get(root, -1) == -1:
@@ -306,7 +310,7 @@ def _tree(path: Path) -> _Tree:
             f"{path}: a hierarchy of type {content['hierarchyType']!r:.40} is not read, only json"
         )
     count = content.get("points")
-    if not isinstance(count, int) or not _is_whole(count) or count < 0:
+    if not isinstance(count, int) or not _is_whole(count) or not 0 <= count <= _MOST:
         raise FileFormatError(f"{path} is corrupt: it declares {count!r:.40} points")
     low, high = _bounds(path, content.get("bounds"))
     record, scales, offsets = _schema(path, content.get("schema"))
@@ -347,6 +351,8 @@ def _schema(path: Path, given: Any) -> tuple[np.dtype[Any], tuple[float, ...], t
             raise FileFormatError(f"{path} is corrupt: a dimension of its schema is {each!r:.120}")
         fields[name] = f"<{_KINDS[kind]}{size}"
         scaling[name] = float(scale), float(offset)
+    if len({_NAMES.get(name, name) for name in fields}) < len(fields):
+        raise FileFormatError(f"{path} is corrupt: its schema has a dimension twice")
     missing = [axis for axis in "XYZ" if axis not in fields]
     if missing:
         raise FileFormatError(f"{path} is corrupt: its schema has no {missing[0]}")
