@@ -408,6 +408,15 @@ def test_what_is_no_background_mesh(tmp_path: Path) -> None:
     cases: list[tuple[Any, type[Exception], str]] = [
         ((points, simplices, -lengths), delone.InputError, "must be above 0"),
         ((points, simplices, lengths[1:]), delone.InputError, "values of shape"),
+        ((points, simplices, lengths.astype(str)), delone.DtypeError, "real numbers as values"),
+        ((points, simplices, lengths + 1j), delone.DtypeError, "real numbers as values"),
+        ((points, simplices, [10**400] * len(points)), delone.DtypeError, "real numbers as values"),
+        ((points, simplices, [[1], [2, 3]]), delone.ShapeError, "rows of unequal length"),
+        (
+            (points, simplices, np.ma.masked_less(lengths, 0.5)),
+            delone.DtypeError,
+            "size is a masked array",
+        ),
         ((points, simplices), delone.InputError, "got 2 items"),
         ((points, simplices + 1, lengths), delone.InputError, "simplices"),
         ((points[:, :2], simplices, lengths), delone.ShapeError, "points"),
@@ -421,6 +430,20 @@ def test_what_is_no_background_mesh(tmp_path: Path) -> None:
         tetgen.TetGen(*CUBE).tetrahedralize(bgmesh=cases[0][0], bgmeshfilename="a.b")
     with pytest.raises(FileNotFoundError):
         tetgen.TetGen(*CUBE).tetrahedralize(bgmeshfilename=str(tmp_path / "none.b"))
+    for name in (3, b"sizes.b"):
+        with pytest.raises(delone.DtypeError, match="bgmeshfilename must be a path"):
+            tetgen.TetGen(*CUBE).tetrahedralize(bgmeshfilename=name)
+    with pytest.raises(delone.InputError, match="must end with the name of files"):
+        tetgen.TetGen(*CUBE).tetrahedralize(bgmeshfilename=".")
+    for ending, text in (
+        ("node", "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1"),
+        ("ele", "1 4 0\n0 0 1 2 3"),
+        # With numbers of points, which the format lacks.
+        ("mtr", "4 1\n0 1.5\n1 1.5\n2 1.5\n3 1.5"),
+    ):
+        (tmp_path / f"numbered.{ending}").write_text(text)
+    with pytest.raises(delone.FileFormatError, match="more than one number for each of its 4"):
+        tetgen.TetGen(*CUBE).tetrahedralize(bgmeshfilename=tmp_path / "numbered")
     pyvista = pytest.importorskip("pyvista")
     grid = pyvista.UnstructuredGrid({10: simplices}, points)
     with pytest.raises(delone.InputError, match="target_size"):

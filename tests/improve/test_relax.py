@@ -320,5 +320,7 @@ def test_arguments_are_checked() -> None:
         MESH.coarsen(min_angle=80)
     with pytest.raises((InputError, ShapeError), match="tetrahedra"):
         MESH.coarsen([MESH.nsimplex])
+    with pytest.raises(delone.ShapeError, match="marked has rows of unequal length"):
+        MESH.coarsen([[1], [2, 3]])
     with pytest.raises(InputError, match="contract"):
         delone.improve(MESH, contract="some")

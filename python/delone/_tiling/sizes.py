@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._base.arrays import as_number
+from delone._base.arrays import as_number, as_plain_array
 from delone._tiling.triangulation import Triangulation
 from delone.errors import DtypeError, InputError, ShapeError
 
@@ -67,7 +67,7 @@ def checked(sizes: Any, positions: Floats) -> Floats:
 
 def chosen(marked: ArrayLike, count: int, nouns: str) -> NDArray[np.intp]:
     """Return the numbers of marked simplices, given as a mask or as numbers."""
-    array = np.asarray(marked)
+    array = as_plain_array(marked, "marked")
     if array.dtype.kind == "b":
         if array.shape != (count,):
             raise ShapeError(f"marked must have shape ({count},), got {array.shape}")
@@ -101,11 +101,14 @@ def evaluator(size: Any, ndim: int = 2) -> Callable[[Floats], Floats]:
 
 def _of_background(mesh: Triangulation, values: Any) -> Callable[[Floats], Floats]:
     """Interpolate linearly on a triangulation; outside, use its nearest point."""
-    lengths = np.array(values, dtype=np.float64)
-    if lengths.shape != (mesh.npoints,):
+    given = as_plain_array(values, "size")
+    if given.dtype.kind not in "iuf":
+        raise DtypeError(f"size must have real numbers as values, got dtype {given.dtype}")
+    if given.shape != (mesh.npoints,):
         raise InputError(
-            f"size has values of shape {lengths.shape} for the {mesh.npoints} points of its mesh"
+            f"size has values of shape {given.shape} for the {mesh.npoints} points of its mesh"
         )
+    lengths = given.astype(np.float64)
     if not mesh.nsimplex:
         raise InputError(f"size is given on a triangulation without {_NOUNS[mesh.ndim]}")
     checked(lengths, mesh.points)

@@ -32,7 +32,7 @@ _ARRAY = "target_size"
 _TETRAHEDRON = 10
 
 
-def background(bgmesh: Any, filename: str | os.PathLike[str]) -> tuple[TetMesh, Floats] | None:
+def background(bgmesh: Any, filename: str | os.PathLike[str]) -> tuple[TetMesh, ArrayLike] | None:
     """Return the background mesh, if there is one, and the length at each of its points.
 
     `bgmesh` is a grid, or ``(points, simplices, lengths)``; `filename` has no suffix.
@@ -47,7 +47,13 @@ def background(bgmesh: Any, filename: str | os.PathLike[str]) -> tuple[TetMesh, 
         return _checked(points, simplices, lengths, "bgmesh")
     if not filename:
         return None
-    return _of_files(Path(os.fspath(filename)))
+    try:
+        stem = Path(os.fspath(filename))
+    except TypeError:
+        raise DtypeError(f"bgmeshfilename must be a path, got {filename!r:.80}") from None
+    if not stem.name:
+        raise InputError(f"bgmeshfilename must end with the name of files, got {filename!r:.80}")
+    return _of_files(stem)
 
 
 def _of_grid(grid: Any) -> tuple[ArrayLike, ArrayLike, ArrayLike]:
@@ -67,7 +73,7 @@ def _of_grid(grid: Any) -> tuple[ArrayLike, ArrayLike, ArrayLike]:
     return grid.points, cells[_TETRAHEDRON], grid.point_data[_ARRAY]
 
 
-def _of_files(stem: Path) -> tuple[TetMesh, Floats]:
+def _of_files(stem: Path) -> tuple[TetMesh, ArrayLike]:
     """Read ``stem.node``, ``stem.ele`` and ``stem.mtr``."""
     node, ele, sizes = (stem.with_name(f"{stem.name}.{end}") for end in ("node", "ele", "mtr"))
     for beside in (ele, sizes):
@@ -80,12 +86,15 @@ def _of_files(stem: Path) -> tuple[TetMesh, Floats]:
             f"{sizes}: {count} points with {columns} values, but a background mesh has one size "
             f"for each of its {len(mesh.points)} points"
         )
-    return _checked(mesh.points, mesh.simplices, numbers.take(count, 1)[:, 0], str(stem))
+    lengths = numbers.take(count, 1)[:, 0]
+    if not numbers.ended:
+        raise FileFormatError(f"{sizes} has more than one number for each of its {count} points")
+    return _checked(mesh.points, mesh.simplices, lengths, str(stem))
 
 
 def _checked(
     points: ArrayLike, simplices: ArrayLike, lengths: ArrayLike, name: str
-) -> tuple[TetMesh, Floats]:
+) -> tuple[TetMesh, ArrayLike]:
     """Return a mesh of positively oriented tetrahedra; flat ones are left out."""
     places = as_points(points, ndim=3)
     require_finite(places)
@@ -100,7 +109,7 @@ def _checked(
         mesh = improve((places, rows), flips=False, smooth=False, max_iter=0)
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
-    return mesh, np.asarray(lengths, dtype=np.float64)
+    return mesh, lengths
 
 
 def _signs(points: Floats, simplices: Indices) -> NDArray[np.int8]:
