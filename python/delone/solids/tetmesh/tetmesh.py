@@ -352,7 +352,7 @@ class TetMesh(Triangulation):
             A mesh without some of the added interior points; its ``report`` is an `ImproveReport`
             with the number of removed points. Input points, points on the surface or between
             regions, and points that the bound requires remain. If no point can be removed, the
-            result is this mesh itself.
+            result is this mesh itself, with the report that it already has.
 
         Raises
         ------
