@@ -252,3 +252,20 @@ def test_draped_lines_lose_no_part_that_is_outside():
         [1, 1, 0],
         [2, 2, 7],
     ]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("power", [-1000, -700, 700, 1010])
+@pytest.mark.parametrize("line", [[(0.5, 0.25), (3.25, 3.75)], [(0, 1), (3, 1)], [(0, 0), (3, 3)]])
+def test_profiles_do_not_depend_on_the_unit_of_coordinates(power, line):
+    """Areas of triangles are beyond the doubles then."""
+    random = np.random.default_rng(7)
+    lattice = [(x, y) for x in range(5) for y in range(5)]
+    points = np.vstack((lattice, 4 * random.random((60, 2))))
+    z = random.random(len(points))
+    plain = TIN.from_points(np.column_stack((points, z))).profile(line)
+    scaled = TIN.from_points(np.column_stack((np.ldexp(points, power), z)))
+    found = scaled.profile(np.ldexp(np.array(line, dtype=float), power))
+    assert len(plain) > 4
+    assert np.array_equal(found.z, plain.z)
+    assert np.array_equal(np.ldexp(found.distances, -power), plain.distances)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -266,9 +267,13 @@ def _crossings(tin: Surface, sides: Indices, a: Floats, b: Floats) -> _Part:
     points, count = tin.points, len(u)
     start, end = (np.broadcast_to(each, (count, 2)).copy() for each in (a, b))
     on_u, on_v = (_core.orient2d(start, end, points[each]) == 0 for each in (u, v))
+    # With a factor that is a power of two, products neither overflow nor vanish.
+    given = points[u], points[v], start, end
+    largest = max(float(np.abs(each).max(initial=0.0)) for each in given)
+    one, two, tail, head = (np.ldexp(each, -math.frexp(largest)[1]) for each in given)
     # Areas have small relative errors, so that fractions are right even in needles.
-    of_u, of_v = (_areas(start, end, points[each]) for each in (u, v))
-    of_a, of_b = (_areas(points[u], points[v], each) for each in (start, end))
+    of_u, of_v = (_areas(tail, head, each) for each in (one, two))
+    of_a, of_b = (_areas(one, two, each) for each in (tail, head))
     with np.errstate(invalid="ignore"):
         along, share = of_u / (of_u + of_v), of_a / (of_a + of_b)
     z = tin.z[u] + along * (tin.z[v] - tin.z[u])
@@ -276,8 +281,9 @@ def _crossings(tin: Surface, sides: Indices, a: Floats, b: Floats) -> _Part:
     vertex = np.where(on_u, u, v)
     at = np.flatnonzero(on_u | on_v)
     z[at], places[at] = tin.z[vertex[at]], points[vertex[at]]
-    way = end[at] - start[at]
-    share[at] = ((places[at] - start[at]) * way).sum(axis=1) / (way * way).sum(axis=1)
+    way = head[at] - tail[at]
+    part = np.where(on_u[:, None], one, two)[at] - tail[at]
+    share[at] = (part * way).sum(axis=1) / (way * way).sum(axis=1)
     return _Part(np.clip(share, 0, 1), z, places)
 
 
