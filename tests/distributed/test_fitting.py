@@ -134,6 +134,20 @@ def test_counts_that_go_up_and_down() -> None:
         assert of(error) <= most < of(2.0 ** ((round(8 * math.log2(error)) - 1) / 8))
 
 
+def test_heights_that_are_the_least_doubles(tmp_path: Path) -> None:
+    """Steps of the scale are errors of one or two such numbers, as are those of levels."""
+    points = bumps(600)
+    least = float(np.finfo(float).smallest_subnormal)
+    points[:, 2] = np.random.default_rng(3).integers(0, 3, 600) * least
+    tiles = distributed.triangulate(points, tmp_path / "least", tile_points=150)
+    every = tiles.simplify(max_error=0).nsimplex
+    for most in (100, every // 2, every - 1):
+        found = tiles.simplify(max_triangles=most)
+        assert found.nsimplex <= most
+        assert all(simplifying.prove(tiles, found, 2 * least))
+    assert all(simplifying.prove(tiles, tiles.simplify(max_error=least), least))
+
+
 def test_heights_at_the_end_of_doubles() -> None:
     huge = float(np.finfo(float).max)
     count, _ = counter(lambda error: 20 if error > 1e308 else 10**6)

@@ -282,3 +282,26 @@ def test_errors_are_rounded_upwards():
     third = TIN.from_points([(0, 0, 0), (3, 0, 0), (0, 3, 1), (1, 1, 0)])
     error = float(third.simplification(max_error=1).errors[0])
     assert Fraction(error) > Fraction(1, 3) > Fraction(np.nextafter(error, 0).item())
+
+
+@pytest.mark.parametrize("steps", [0, 1, 2, 3])
+def test_errors_as_small_as_the_least_double(steps):
+    """Bounds are rounded up, but not above the error that was asked for."""
+    random = np.random.default_rng(5)
+    least = np.finfo(float).smallest_subnormal
+    points = np.column_stack((random.random((200, 2)), random.integers(0, 4, 200) * least))
+    tin = TIN.from_points(points)
+    error = float(steps * least)
+    simple = tin.simplify(max_error=error)
+    assert max(distances(points, simple)) <= Fraction(error)
+    assert simple.npoints < 150 or steps == 0
+    levels = tin.simplification(max_error=error)
+    assert levels.errors.min() <= error and levels.validate(max_error=error)
+
+
+@pytest.mark.filterwarnings("error")
+def test_errors_beyond_the_doubles():
+    points = np.array([(0, 0, 1), (4, 0, 1), (4, 4, 1), (0, 4, 1), (1, 2, -1), (3, 2, -1.0)])
+    points[:, 2] *= 1.7e308
+    levels = TIN.from_points(points).simplification(max_error=0)
+    assert levels.errors[0] == np.inf and levels.errors[-1] == 0

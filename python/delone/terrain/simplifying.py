@@ -290,6 +290,7 @@ def simplified(
     (places, corners), _ = _scaled(ground.points[free], mesh.points)
     (z, heights), rise = _scaled(ground.z[free], coarse.z)
     homes = _core.find_simplex2(corners, mesh.simplices, mesh.neighbors, places, workers)
+    goal = float(np.nextafter(np.ldexp(error, -rise), 0.0)) if rise else error
     found = _core.simplify2(
         _Sheet(corners, mesh.simplices, mesh.neighbors, heights),
         mesh.segments,
@@ -297,13 +298,16 @@ def simplified(
         places,
         z,
         homes,
-        float(np.nextafter(np.ldexp(error, -rise), 0.0)) if rise else error,
+        goal,
         most,
         workers,
     )
     errors = found.errors
     if rise:
-        errors = np.nextafter(np.ldexp(errors, rise), np.where(errors > 0, np.inf, 0))
+        with np.errstate(over="ignore"):
+            larger = np.nextafter(np.ldexp(errors, rise), np.where(errors > 0, np.inf, 0))
+        # Rounded up, but what reaches the goal is within the error that was asked for.
+        errors = np.where(errors <= goal, np.minimum(larger, error), larger)
     return Simplification(
         points=np.column_stack((ground.points, ground.z)),
         fixed=ground.fixed,
