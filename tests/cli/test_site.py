@@ -171,6 +171,19 @@ def test_volumes_to_several_surfaces(hill, figures, command, tmp_path):
     assert not (tmp_path / "x").exists()
 
 
+def test_a_volume_without_common_area_has_no_picture(hill, figures, tmp_path):
+    table = np.loadtxt(hill, delimiter=",", skiprows=1) + np.array([1e4, 0, 0])
+    far = tmp_path / "far.csv"
+    np.savetxt(far, table, delimiter=",", header="x,y,z", comments="")
+    options = [*COMMON[:4], "--quiet", "--volume", far, "--volume", 2]
+    found = figures("terrain", hill, *options, "-o", tmp_path / "site")["products"]
+    assert [each["product"] for each in found] == ["volume far", "volume 2"]
+    assert found[0]["area"] == 0 < found[1]["area"]
+    page = Page((tmp_path / "site" / "index.html").read_text(encoding="utf-8"))
+    pictures = [given["alt"] for tag, given in page.tags if tag == "img"]
+    assert len(pictures) == 2 and "level" in pictures[1]
+
+
 HOSTILE = "<img src=x onerror=alert(1)>&\"'%41"
 
 

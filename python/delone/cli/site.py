@@ -373,7 +373,10 @@ def _section(tin: TIN, product: _Product) -> Section:
     wide, high, alt = 6.0, None, f"Map of the {title}"
     if product.goal is not None:
         cells = tin.raster(resolution=_cell(tin))
-        draw = difference(cells, product.goal, crs=tin.crs, units=tin.units).plot
+        gaps = difference(cells, product.goal, crs=tin.crs, units=tin.units)
+        if not np.isfinite(gaps.values).any():
+            return Section(title, rows)
+        draw = gaps.plot
         level = "level" if "height" in product.figures else "other surface"
         alt = f"Map of what is above the {level} in red, which is to be cut, and below it in blue"
     elif name in ("dem", *_SHADES):
