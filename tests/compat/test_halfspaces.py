@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import math
+import pickle
 from fractions import Fraction
 from itertools import combinations
 from typing import Any
@@ -10,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from delone import DtypeError, ShapeError
 from delone.compat.scipy import DimensionError, HalfspaceIntersection, QhullError
 from delone.voronoi.halfspaces import common_part
 
@@ -476,3 +479,49 @@ def test_far_from_the_origin(shift: float) -> None:
     rows[:, 2] -= rows[:, :2] @ [shift, shift]
     found = HalfspaceIntersection(rows, np.array([shift + 0.3, shift + 0.7]))
     assert sorted((found.intersections - shift).tolist()) == [[0, 0], [0, 1], [1, 0], [1, 1]]
+
+
+@pytest.mark.parametrize("options", ["", "Qt"])
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda each: pickle.loads(pickle.dumps(each))])
+def test_copies_are_the_same_and_can_grow(copied: Any, options: str) -> None:
+    rows, point = tangents(40, 3, seed=4)
+    given = HalfspaceIntersection(rows[:30], point, incremental=True, qhull_options=options)
+    given.add_halfspaces(rows[30:35])
+    other = copied(given)
+    for step in range(2):
+        assert np.array_equal(given.intersections, other.intersections)
+        assert np.array_equal(given.dual_points, other.dual_points)
+        assert np.array_equal(given.dual_equations, other.dual_equations)
+        assert given.dual_facets == other.dual_facets
+        assert (given.dual_volume, given.nineq) == (other.dual_volume, 35 + 5 * step)
+        if not step:
+            for each in (given, other):
+                each.add_halfspaces(rows[35:])
+    given.close()
+    with pytest.raises(RuntimeError, match="closed"):
+        copied(given).add_halfspaces(rows[:1])
+
+
+def test_later_changes_of_the_arrays_have_no_effect() -> None:
+    rows, point = SQUARE.copy(), np.array([0.5, 0.5])
+    found = HalfspaceIntersection(rows, point, incremental=True)
+    rows[:], point[:] = 9, 7
+    found.add_halfspaces([(1, 1, -1.5)])
+    right = HalfspaceIntersection(np.vstack((SQUARE, [(1, 1, -1.5)])), [0.5, 0.5])
+    assert np.array_equal(found.intersections, right.intersections)
+    assert np.array_equal(found.halfspaces, right.halfspaces)
+
+
+def test_points_and_rows_that_are_no_real_numbers() -> None:
+    half = [0.5, 0.5]
+    for rows, point, error, words in (
+        (SQUARE, np.ma.masked_array(half, [True, False]), DtypeError, "point must not be a masked"),
+        (SQUARE, np.array([0.5, 0.5j]), DtypeError, "interior_point must contain real numbers"),
+        (SQUARE, ["0.5", "0.5"], DtypeError, "interior_point must contain real numbers"),
+        (SQUARE, [[1], [1, 2]], ShapeError, "interior_point has rows of unequal length"),
+        ([[object()] * 3] * 4, half, DtypeError, "halfspaces must contain real numbers"),
+        ([[10**400, 0, -1], [0, 1, -1]], half, DtypeError, "halfspaces must contain real numbers"),
+        ([[1, 2, 3], [1, 2]], half, ShapeError, "halfspaces has rows of unequal length"),
+    ):
+        with pytest.raises(error, match=words):
+            HalfspaceIntersection(rows, point)

@@ -36,6 +36,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
+from delone._base.arrays import as_plain_array
 from delone._base.masks import is_masked
 from delone._tiling.higher.dimension import MOST
 from delone._tiling.higher.rational import kernel
@@ -138,14 +139,19 @@ class HalfspaceIntersection:
         self._open = bool(incremental)
         text = "" if qhull_options is None else qhull_options
         self._options = read_options(text, incremental=self._open, what=HALFSPACES)
+        self._text = text
         rows = _as_rows(halfspaces)
-        point = np.ascontiguousarray(interior_point, dtype=np.float64)
+        point = _as_doubles(interior_point, "interior_point")
         if point.shape != (rows.shape[1] - 1,):
             raise ShapeError(
                 f"interior_point must have shape ({rows.shape[1] - 1},), got {point.shape}"
             )
         self.interior_point = point
         self._set(rows)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # The results are the same, whether half-spaces are added or given at once.
+        return type(self), (self.halfspaces, self.interior_point, self._open, self._text)
 
     def _set(self, rows: Floats, kept: Rows | None = None) -> None:
         """Compute the results for the half-spaces; nothing changes if that fails.
@@ -253,12 +259,7 @@ class HalfspaceIntersection:
 
 def _as_rows(halfspaces: ArrayLike) -> Floats:
     """Half-spaces as rows of doubles, with errors of SciPy's types."""
-    if is_masked(halfspaces):
-        raise DtypeError("halfspaces must not be a masked array")
-    given: NDArray[Any] = np.asarray(halfspaces)
-    if given.dtype.kind not in "biufO":
-        raise DtypeError(f"halfspaces must contain real numbers, got dtype {given.dtype}")
-    rows = np.ascontiguousarray(given, dtype=np.float64)
+    rows = _as_doubles(halfspaces, "halfspaces")
     if rows.ndim != 2 or rows.shape[1] < _FEWEST:
         raise ShapeError(
             f"halfspaces must be a 2D array of shape (nineq, 3 or more), got {rows.shape}"
@@ -276,6 +277,19 @@ def _as_rows(halfspaces: ArrayLike) -> Floats:
             count=len(bad),
         )
     return rows
+
+
+def _as_doubles(values: ArrayLike, name: str) -> Floats:
+    """A copy of an array as doubles: later changes of the array have no effect."""
+    if is_masked(values):
+        raise DtypeError(f"{name} must not be a masked array")
+    given = as_plain_array(values, name)
+    if given.dtype.kind not in "biufO":
+        raise DtypeError(f"{name} must contain real numbers, got dtype {given.dtype}")
+    try:
+        return np.array(given, dtype=np.float64, order="C")
+    except (TypeError, ValueError, OverflowError) as error:
+        raise DtypeError(f"{name} must contain real numbers: {error}") from None
 
 
 def _reason(why: str, rows: Floats, named: Indices | Rows) -> str:
