@@ -12,6 +12,7 @@ import pytest
 import delone
 import solids
 from delone.compat import tetgen
+from delone.compat.tetgen_sizes import background
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -400,6 +401,14 @@ def test_a_background_mesh_has_sizes(how: str, tmp_path: Path) -> None:
     by_switches = tet.tetrahedralize(switches="pq1.5/20m", **options)[1]
     assert np.array_equal(by_switches, mesh.simplices)
     assert len(tet.tetrahedralize(switches="p", **options)[1]) < 20
+
+
+def test_all_tetrahedra_of_a_background_mesh_count() -> None:
+    points, simplices = lattice(4)
+    mesh, lengths = background((points, simplices, wanted(points)), "")
+    assert mesh.nsimplex == len(simplices) and len(lengths) == len(points)
+    flat = np.concatenate((simplices, [[0, 1, 2, 3]]))
+    assert background((points, flat, wanted(points)), "")[0].nsimplex == len(simplices)
 
 
 def test_what_is_no_background_mesh(tmp_path: Path) -> None:

@@ -299,6 +299,18 @@ def test_improvement_may_remove_points() -> None:
     assert volume(every.points, every.simplices) == volume(cloud.points, cloud.simplices)
 
 
+def test_fixed_points_behind_removed_ones_are_known_in_the_report() -> None:
+    mesh = boxes(0.3, min_angle=0, radius_edge=None)
+    fixed = np.arange(mesh.npoints) % 5 == 4
+    better = delone.improve(mesh, min_angle=40, fixed=fixed)
+    assert better.report.points_removed > 0
+    held = on_faces(better) | set(map(tuple, mesh.points[fixed].tolist()))
+    corners = better.points[better.simplices[better.report.below]].tolist()
+    for cause, places in zip(better.report.cause, corners, strict=True):
+        every = all(tuple(place) in held for place in places)
+        assert every == (cause == "boundary") or cause in ("angle", "rounding")
+
+
 def test_saved_meshes_have_the_report(tmp_path: Path) -> None:
     coarser = MESH.coarsen()
     coarser.save(tmp_path / "a.npz")
