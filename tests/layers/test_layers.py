@@ -66,6 +66,7 @@ BASE: dict[str, set[str]] = {
     "sets": {"error", "memory"},
     "random": set(),
     "vector": set(),
+    "target": set(),
     "parallel": GROUND,
     "points": {"error", "memory", "delone_predicates"},
     "boxes": {"points"} | GROUND,
@@ -83,7 +84,8 @@ CORE: dict[str, set[str]] = {
     "measure": {"parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "constrained": {"boxes", "delaunay", "joins", "mesh", "order", "points", "delone_predicates"}
     | GROUND,
-    "refine": {"constrained", "delaunay", "measure", "mesh", "wide", "delone_predicates"} | GROUND,
+    "refine": {"constrained", "delaunay", "measure", "mesh", "target", "wide", "delone_predicates"}
+    | GROUND,
     "locate": {"boxes", "order", "points", "parallel", "wide", "delone_predicates"} | GROUND,
     "alpha": {"measure", "order", "parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "graphs": {"boxes", "order", "points", "parallel", "wide", "num_bigint", "delone_predicates"}
@@ -136,6 +138,7 @@ CORE: dict[str, set[str]] = {
         "order",
         "parallel",
         "points",
+        "target",
         "wide",
         "num_bigint",
         "delone_predicates",

@@ -2,7 +2,8 @@
 
 use delone_core::base::error::Result;
 use delone_core::base::error::{Error, Result as CoreResult};
-use delone_core::solids::improve::{self, Improved, Target, Task};
+use delone_core::base::target::Target;
+use delone_core::solids::improve::{self, Improved, Task};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 

@@ -5,8 +5,9 @@ use std::time::{Duration, Instant};
 
 use delone_core::base::error::{Error, Result};
 use delone_core::base::memory::copied;
+use delone_core::base::target::Target;
 use delone_core::base::watch::Watch;
-use delone_core::refine::smooth::{self, Target};
+use delone_core::refine::smooth;
 use delone_core::refine::{Lines, Refined, Rounds, Samples, Task, judge, refine_telling};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;

@@ -13,6 +13,7 @@ pub mod proof;
 #[cfg(test)]
 pub(crate) mod random;
 pub(crate) mod sets;
+pub mod target;
 pub(crate) mod vector;
 pub mod watch;
 pub(crate) mod wide;

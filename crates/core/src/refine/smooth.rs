@@ -20,6 +20,7 @@ use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
 
 use crate::base::error::{Error, Result};
 use crate::base::memory::{copied, filled, with_room};
+use crate::base::target::Target;
 use crate::base::watch::{Pace, Watch};
 use crate::measure;
 
@@ -28,34 +29,6 @@ const LOT: usize = 1 << 14;
 
 /// The smallest fraction of a step that a vertex takes, after three halvings.
 const LEAST: f64 = 1.0 / 8.0;
-
-/// Where vertices move to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Target {
-    /// The centroid of the Voronoi cell, as far as the triangles of the vertex cover it.
-    Lloyd,
-    /// The mean of the circumcenters of its triangles, weighted by area.
-    Odt,
-    /// The mean of its neighbors.
-    Laplace,
-}
-
-impl Target {
-    /// The names of the targets.
-    pub const NAMES: [(&'static str, Self); 3] = [
-        ("lloyd", Self::Lloyd),
-        ("odt", Self::Odt),
-        ("laplace", Self::Laplace),
-    ];
-
-    /// The target with this name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::NAMES
-            .iter()
-            .find(|(n, _)| *n == name)
-            .map(|&(_, target)| target)
-    }
-}
 
 /// Triangles of a domain.
 #[derive(Debug, Clone, PartialEq)]

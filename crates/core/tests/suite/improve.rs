@@ -4,8 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use delone_core::Point3;
 use delone_core::base::error::{Error, Result};
+use delone_core::base::target::Target;
 use delone_core::base::watch::Watch;
-use delone_core::solids::improve::{Improved, Target, Task, coarsen, improve, relax};
+use delone_core::solids::improve::{Improved, Task, coarsen, improve, relax};
 use delone_predicates::{Sign, orient3d};
 use num_rational::BigRational;
 use num_traits::Zero;
@@ -595,6 +596,33 @@ fn a_vertex_goes_to_its_best_neighbor() {
 fn sorted(mut t: [i32; 4]) -> [i32; 4] {
     t.sort_unstable();
     t
+}
+
+#[test]
+fn large_cubes_change_everywhere() {
+    // More vertices than are passed between two checks for interruption.
+    let (points, simplices) = shaken(19, 0.3);
+    let removable = vec![true; points.len()];
+    for (name, change) in CHANGES {
+        let given = Task {
+            removable: &removable,
+            min_angle: 5.0,
+            passes: 1,
+            ..task(&points, &simplices)
+        };
+        let made = change(given, &Watch::idle()).unwrap();
+        let used: BTreeSet<i32> = made.simplices.as_flattened().iter().copied().collect();
+        let mut eighths = [0; 8];
+        for (row, (p, q)) in (0..).zip(points.iter().zip(&made.points)) {
+            if p != q || !used.contains(&row) {
+                eighths[(0..3).map(|k| usize::from(p[k] > 9.5) << k).sum::<usize>()] += 1;
+            }
+        }
+        assert!(
+            eighths.iter().all(|&count| count > 20),
+            "{name} {eighths:?}"
+        );
+    }
 }
 
 #[test]

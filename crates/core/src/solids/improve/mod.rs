@@ -42,10 +42,10 @@ mod task;
 mod work;
 
 pub(crate) use order::{Imported, import, rotated};
-pub use relax::Target;
 pub use task::{Counts, Improved, Task, Tell};
 
 use crate::base::error::{Error, Result};
+use crate::base::target::Target;
 use crate::base::watch::Watch;
 
 /// Improves tetrahedra.

@@ -20,6 +20,7 @@ use super::store::{FACES, Store};
 use super::work::Work;
 use crate::base::error::Result;
 use crate::base::memory::filled;
+use crate::base::target::Target;
 use crate::base::watch::{Pace, Watch};
 
 /// Tetrahedra between two checks for interruption.
@@ -28,34 +29,6 @@ const LOT: usize = 1 << 12;
 const HALVINGS: usize = 4;
 /// A change is tried if its computed quality is at least this times the bound; the proof comes later.
 const SLACK: f64 = 1.0 - 1e-9;
-
-/// Where smoothing moves a vertex.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Target {
-    /// The centroid of its Voronoi cell, as far as its tetrahedra cover it.
-    Lloyd,
-    /// The mean of the circumcenters of its tetrahedra, weighted by volume.
-    Odt,
-    /// The mean of its neighbors.
-    Laplace,
-}
-
-impl Target {
-    /// The names of the targets.
-    pub const NAMES: [(&'static str, Self); 3] = [
-        ("lloyd", Self::Lloyd),
-        ("odt", Self::Odt),
-        ("laplace", Self::Laplace),
-    ];
-
-    /// The target with this name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::NAMES
-            .iter()
-            .find(|(n, _)| *n == name)
-            .map(|&(_, target)| target)
-    }
-}
 
 impl Bounds {
     /// Whether these are certainly at least `bound`, or what they were before if that is less.
