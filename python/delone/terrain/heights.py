@@ -133,11 +133,14 @@ def _reduced(  # noqa: PLR0917
     points: Floats, claims: Claims, policy: str, tolerance: float, what: str, option: str
 ) -> Claims:
     """Reduce the claims at each vertex to one: the most accurate one if they agree."""
+    several = np.bincount(claims.vertex, minlength=len(points))[claims.vertex] > 1
+    if not several.any():
+        return claims
+    # Most vertices have one claim; only the others are sorted.
+    alone, claims = claims.among(~several), claims.among(several)
     order = np.lexsort((claims.z, claims.bound, claims.vertex))
     vertex, first = np.unique(claims.vertex[order], return_index=True)
     z, bound = claims.z[order][first], claims.bound[order][first]
-    if len(vertex) == len(order):
-        return Claims(vertex, z, bound)
     at = np.searchsorted(vertex, claims.vertex)
     low, high = np.full(len(z), np.inf), np.full(len(z), -np.inf)
     least, most = high.copy(), low.copy()
@@ -148,9 +151,7 @@ def _reduced(  # noqa: PLR0917
     np.minimum.at(most, at, claims.z + claims.bound)
     with np.errstate(over="ignore"):
         different = np.flatnonzero(least - most > tolerance)
-    if not len(different):
-        return Claims(vertex, z, bound)
-    if policy == "raise":
+    if policy == "raise" and len(different):
         rows = vertex[different]
         raise conflict(points[rows], rows, low[different], high[different], what, option)
     if policy == "mean":
@@ -158,7 +159,7 @@ def _reduced(  # noqa: PLR0917
         z[different] = total[different] / number[different]
     else:
         z[different] = (low if policy == "min" else high)[different]
-    return Claims(vertex, z, bound)
+    return Claims.joined([alone, Claims(vertex, z, bound)])
 
 
 def conflict(  # noqa: PLR0917
