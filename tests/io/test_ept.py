@@ -484,6 +484,38 @@ def test_coordinates_are_doubles(tmp_path: Path) -> None:
         read_points(folder / "ept.json")
 
 
+@pytest.mark.filterwarnings("error")
+def test_other_dimensions_are_scaled(tmp_path: Path) -> None:
+    records = survey(count=300)
+    file = write(tmp_path / "tiles", records, "binary")
+    content = json.loads(file.read_text(encoding="utf-8"))
+    by_name = {each["name"]: each for each in content["schema"]}
+    by_name["Intensity"] |= {"scale": 0.5, "offset": -3}
+    by_name["Classification"] |= {"offset": 5}
+    file.write_text(json.dumps(content), encoding="utf-8")
+    found = read_points(file, attributes=["intensity", "classification", "gps_time"])
+    order = np.argsort(found.attributes["intensity"])
+    expected = np.arange(300) / 2 - 3
+    assert found.attributes["intensity"][order].tolist() == expected.tolist()
+    assert np.array_equal(found.attributes["classification"][order], records["Classification"] + 5)
+    assert np.array_equal(found.attributes["gps_time"][order], records["GpsTime"])
+    some = read_points(file, classes=[6])
+    assert len(some) == np.count_nonzero(records["Classification"] == 1) > 0
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("name, what", [("X", {}), ("Z", {}), ("Intensity", {"offset": 1})])
+def test_scales_that_overflow(tmp_path: Path, name: str, what: dict[str, Any]) -> None:
+    file = write(tmp_path / "tiles", survey(count=300), "binary")
+    content = json.loads(file.read_text(encoding="utf-8"))
+    for each in content["schema"]:
+        if each["name"] == name:
+            each.update({"scale": 1e308} | what)
+    file.write_text(json.dumps(content), encoding="utf-8")
+    with pytest.raises(FileFormatError, match=f"has {name}=.* in record .* make infinite"):
+        read_points(file, attributes=["intensity"])
+
+
 def test_nothing_is_allocated_for_a_claim(tmp_path: Path, monkeypatch: Any) -> None:
     """A node that claims more points than its file has is rejected before they are read."""
     file = write(tmp_path / "tiles", survey(count=300))

@@ -67,7 +67,7 @@ _NAMES = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Tree:
-    """The contents of ``ept.json``; scales and offsets are those of x, y and z."""
+    """The contents of ``ept.json``, with the scale and the offset of each dimension."""
 
     path: Path
     data: str
@@ -75,8 +75,7 @@ class _Tree:
     low: tuple[float, ...]
     high: tuple[float, ...]
     record: np.dtype[Any]
-    scales: tuple[float, ...]
-    offsets: tuple[float, ...]
+    scaling: dict[str, tuple[float, float]]
     crs: str | None
 
     def beside(self, folder: str, name: str) -> Path:
@@ -97,7 +96,7 @@ class _Tree:
             side = size / 2.0 ** key[0]
             start = self.low[axis] + key[1 + axis] * side
             # Coordinates are rounded to a multiple of the scale.
-            slack = abs(self.scales[axis]) + 1e-9 * size
+            slack = abs(self.scaling["XY"[axis]][0]) + 1e-9 * size
             if start + side + slack < box[axis] or start - slack > box[2 + axis]:
                 return False
         return True
@@ -208,29 +207,41 @@ def _read_records(  # noqa: PLR0917
         raise FileFormatError(
             f"{tree.path} has no {unknown[0]!r:.80}; it has {', '.join(sorted(names))}"
         )
-    x, y, z = (
-        _scaled(file, records[axis], scale, offset)
-        for axis, scale, offset in zip("XYZ", tree.scales, tree.offsets, strict=True)
-    )
+    x, y, z = (_scaled(file, records[axis], axis, tree.scaling[axis]) for axis in "XYZ")
     keep: Bools = np.ones(len(records), dtype=bool)
     if classes is not None:
-        keep &= np.isin(records[names["classification"]], list(classes))
+        keep &= np.isin(_values(tree, file, records, names["classification"]), list(classes))
     if box is not None:
         left, bottom, right, top = box
         keep &= (x >= left) & (x <= right) & (y >= bottom) & (y <= top)
-    further = {name: records[names[name]][keep] for name in wanted}
+    further = {name: _values(tree, file, records, names[name])[keep] for name in wanted}
     return PointSet(points=np.column_stack((x, y))[keep], z=z[keep], attributes=further)
 
 
-def _scaled(file: Path, values: NDArray[Any], scale: float, offset: float) -> Floats:
-    """Return coordinates; if bad scales make some infinite, these are rejected later."""
+def _values(tree: _Tree, file: Path, records: NDArray[Any], name: str) -> NDArray[Any]:
+    """Return the values of a dimension: those of the records, unless the schema scales them."""
+    if tree.scaling[name] == (1, 0):
+        return records[name]
+    return _scaled(file, records[name], name, tree.scaling[name])
+
+
+def _scaled(file: Path, values: NDArray[Any], name: str, scaling: tuple[float, float]) -> Floats:
+    """Return numbers by a scale and an offset; finite ones stay finite, or are rejected."""
     if values.dtype.kind in "iu" and values.dtype.itemsize == 8:
         # What is rounded up to the end of the range cannot be converted back.
         lowest, highest = (int(end) for end in (values.min(initial=0), values.max(initial=0)))
         if max(-lowest, highest) > _LARGEST:
-            raise FileFormatError(f"{file} has coordinates beyond 2**53, which doubles would round")
+            raise FileFormatError(f"{file} has {name} beyond 2**53, which doubles would round")
+    scale, offset = scaling
     with np.errstate(over="ignore", invalid="ignore"):
-        return values.astype(np.float64) * scale + offset
+        found: Floats = values.astype(np.float64) * scale + offset
+    lost = np.flatnonzero(np.isfinite(values) & ~np.isfinite(found))
+    if len(lost):
+        raise FileFormatError(
+            f"{file} has {name}={values[lost[0]]} in record {lost[0]}, which the scale {scale} "
+            f"and the offset {offset} of the schema make infinite"
+        )
+    return found
 
 
 def _nodes(tree: _Tree, box: Box | None) -> dict[Key, int]:
@@ -313,7 +324,7 @@ def _tree(path: Path) -> _Tree:
     if not isinstance(count, int) or not _is_whole(count) or not 0 <= count <= _MOST:
         raise FileFormatError(f"{path} is corrupt: it declares {count!r:.40} points")
     low, high = _bounds(path, content.get("bounds"))
-    record, scales, offsets = _schema(path, content.get("schema"))
+    record, scaling = _schema(path, content.get("schema"))
     return _Tree(
         path=path,
         data=data,
@@ -321,8 +332,7 @@ def _tree(path: Path) -> _Tree:
         low=low,
         high=high,
         record=record,
-        scales=scales,
-        offsets=offsets,
+        scaling=scaling,
         crs=_system(path, content.get("srs")),
     )
 
@@ -336,8 +346,8 @@ def _bounds(path: Path, given: Any) -> tuple[tuple[float, ...], tuple[float, ...
     raise FileFormatError(f"{path} is corrupt: its bounds {given!r:.80} are not those of a cube")
 
 
-def _schema(path: Path, given: Any) -> tuple[np.dtype[Any], tuple[float, ...], tuple[float, ...]]:
-    """Return the dimensions of a record, and the scales and offsets of x, y and z."""
+def _schema(path: Path, given: Any) -> tuple[np.dtype[Any], dict[str, tuple[float, float]]]:
+    """Return the dimensions of a record, and the scale and the offset of each."""
     fields: dict[str, str] = {}
     scaling: dict[str, tuple[float, float]] = {}
     for each in _dimensions(path, given):
@@ -356,8 +366,7 @@ def _schema(path: Path, given: Any) -> tuple[np.dtype[Any], tuple[float, ...], t
     missing = [axis for axis in "XYZ" if axis not in fields]
     if missing:
         raise FileFormatError(f"{path} is corrupt: its schema has no {missing[0]}")
-    scales, offsets = zip(*(scaling[axis] for axis in "XYZ"), strict=True)
-    return np.dtype(list(fields.items())), scales, offsets
+    return np.dtype(list(fields.items())), scaling
 
 
 def _dimensions(path: Path, given: Any) -> Iterator[dict[str, Any]]:
