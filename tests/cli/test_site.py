@@ -184,6 +184,25 @@ def test_a_volume_without_common_area_has_no_picture(hill, figures, tmp_path):
     assert len(pictures) == 2 and "level" in pictures[1]
 
 
+def test_a_volume_of_any_height_keeps_the_other_products(hill, command, tmp_path):
+    options = [*COMMON[:4], "--volume", "1e308", "--volume", "2", "--contours", "1"]
+    code, _, err = command("terrain", hill, *options, "-o", tmp_path / "site")
+    assert code == 0
+    assert "note: the page has a picture less: a plot cannot hold values beyond 1e+305" in err
+    assert (tmp_path / "site" / "contours.gpkg").exists()
+    page = Page((tmp_path / "site" / "index.html").read_text(encoding="utf-8"))
+    titles = [text for text in page.texts if text.startswith("Volume")]
+    assert titles == ["Volume 1e308", "Volume 2"]
+    assert sum("level" in given["alt"] for tag, given in page.tags if tag == "img") == 1
+
+
+@pytest.mark.parametrize("name", ["terrain", "volume"])
+def test_an_empty_height_is_named(hill, command, tmp_path, name):
+    options = ["--volume", "", "-o", tmp_path / "site"] if name == "terrain" else [""]
+    code, _, err = command(name, hill, *options, *COMMON[:4])
+    assert code and "an empty text: neither a file nor a height" in err
+
+
 HOSTILE = "<img src=x onerror=alert(1)>&\"'%41"
 
 

@@ -3,8 +3,25 @@
 import numpy as np
 import pytest
 
-from delone import Delaunay, datasets
+from delone import Delaunay, InputError, datasets
+from delone.plot.raster import plot_difference, plot_raster
 from delone.plot.shading import Raster, facet_light, point_density, rasterize, relief
+
+pyplot = pytest.importorskip("matplotlib.pyplot")
+pyplot.switch_backend("Agg")
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("draw", [plot_raster, plot_difference])
+def test_values_up_to_a_limit_are_drawn(draw):
+    x, y = np.arange(3.0), np.arange(2.0)
+    values = np.array([[-1, 0, 1], [0.5, np.nan, 0.25]])
+    figure = draw(values * 1e305, x, y).figure
+    figure.canvas.draw()
+    pyplot.close(figure)
+    for largest in (1.01e305, 1.7e308):
+        with pytest.raises(InputError, match="beyond 1e\\+305: divide all values"):
+            draw(values * largest, x, y)
 
 
 def plane(points):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
@@ -41,6 +42,7 @@ from delone.cli.surfaces import (
 )
 from delone.cli.tables import ready_table
 from delone.cli.terrain import write_lines
+from delone.errors import InputError
 from delone.io import read_geometries
 from delone.io.raster import raster_writer
 from delone.terrain import difference
@@ -156,7 +158,7 @@ def terrain(
             _write(product, tin, watch, say)
         figures = figures_of(source, tin, [each for one in products for each in one.files])
         say("drawing the page")
-        with watch.stage("page"):
+        with watch.stage("page"), noting(quiet=quiet):
             _write_page(folder / "index.html", source, tin, figures, products)
     figures["outputs"].append(str(folder / "index.html"))
     figures["output_bytes"] += (folder / "index.html").stat().st_size
@@ -391,13 +393,18 @@ def _section(tin: TIN, product: _Product) -> Section:
     return Section(title, rows, _drawn(draw, wide=wide, high=high), alt, files)
 
 
-def _drawn(draw: Callable[[Any], Any], *, wide: float, high: float | None = None) -> bytes:
-    """Return a picture as the bytes of a PNG file."""
+def _drawn(draw: Callable[[Any], Any], *, wide: float, high: float | None = None) -> bytes | None:
+    """Return a picture as the bytes of a PNG file; None, with a warning, if it cannot be drawn."""
     figures = require("matplotlib.figure", extra="plot", what="drawing the page")
     size = wide, wide * 0.8 if high is None else high
     figure = figures.Figure(figsize=size, dpi=130, layout="constrained")
     ax = figure.add_subplot()
-    draw(ax)
+    try:
+        draw(ax)
+    except InputError as error:
+        # The products are written, and the page has their numbers.
+        warnings.warn(f"the page has a picture less: {error}", stacklevel=2)
+        return None
     ax.ticklabel_format(useOffset=False, style="plain")
     # Coordinates of maps are long, and maps may be narrow.
     ax.locator_params(axis="x", nbins=4 if high is None else 9)

@@ -315,12 +315,13 @@ def band_of(path: Path, layer: str | None) -> int | str | None:
 
 def height_of(text: str) -> float | None:
     """Return a number, or None for a file."""
-    if Path(text).exists():
+    if text and Path(text).exists():
         return None
     try:
         return float(text)
     except ValueError:
-        raise Failure(f"{text}: neither a file nor a height", Exit.INPUT) from None
+        shown = text or "an empty text"
+        raise Failure(f"{shown}: neither a file nor a height", Exit.INPUT) from None
 
 
 def four_of(text: str) -> list[float]:

@@ -20,6 +20,7 @@ __all__ = [
     "new_axes",
     "pixels",
     "require_bounds",
+    "require_values",
     "thin",
 ]
 
@@ -49,6 +50,15 @@ def require_bounds(low: Floats, high: Floats) -> None:
         raise InputError(
             "a plot cannot hold coordinates beyond 1e305 or an extent below 1e-305; "
             "multiply all coordinates by a power of two first, which changes no triangle or cell"
+        )
+
+
+def require_values(values: Floats) -> None:
+    """Reject values whose range overflows in the color scales of matplotlib; NaN is no value."""
+    if np.nanmax(np.abs(values), initial=0) > _DRAWABLE[1]:
+        raise InputError(
+            f"a plot cannot hold values beyond {_DRAWABLE[1]:g}: divide all values by a power of "
+            "two first"
         )
 
 

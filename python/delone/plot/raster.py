@@ -9,7 +9,7 @@ import numpy as np
 from delone._base.arrays import as_flag, as_number, as_optional_flag
 from delone._base.extras import require
 from delone.errors import InputError
-from delone.plot.axes import axis_names, figure_size, new_axes
+from delone.plot.axes import axis_names, figure_size, new_axes, require_values
 from delone.plot.colors import add_bar, as_cmap, scale, shaded, show
 from delone.plot.shading import Raster, relief
 
@@ -68,7 +68,7 @@ def plot_raster(
     MissingExtraError
         matplotlib is not installed.
     InputError
-        No value is finite.
+        No value is finite, or one is beyond 1e305.
 
     Examples
     --------
@@ -84,6 +84,7 @@ def plot_raster(
     colors = as_cmap(cmap)
     if not np.isfinite(values).any():
         raise InputError("the raster has no finite value to draw")
+    require_values(values[np.isfinite(values)])
     ax = new_axes(ax)
     mapped = scale(values, colors)
     rgba = mapped.to_rgba(values)
@@ -130,6 +131,7 @@ def plot_difference(
     known = np.abs(values[np.isfinite(values)])
     if not len(known):
         raise InputError("no cell has a difference to draw")
+    require_values(known)
     if limit is None:
         end = float(np.quantile(known, 0.99)) or float(known.max()) or 1.0
     else:
