@@ -148,6 +148,22 @@ def test_heights_that_are_the_least_doubles(tmp_path: Path) -> None:
     assert all(simplifying.prove(tiles, tiles.simplify(max_error=least), least))
 
 
+@pytest.mark.filterwarnings("error")
+def test_heights_with_a_range_beyond_the_largest_double(tmp_path: Path) -> None:
+    """Lines along cuts are as simple as those of the same heights in a smaller unit."""
+    points = bumps(600)
+    points[:, 2] *= 1.7 / np.abs(points[:, 2]).max() * np.random.default_rng(6).choice([-1, 1], 600)
+    found = []
+    for power in (1023, 100):
+        given = np.column_stack((points[:, :2], np.ldexp(points[:, 2], power)))
+        tiles = distributed.triangulate(given, tmp_path / str(power), tile_points=150)
+        simple = tiles.simplify(max_error=math.ldexp(0.5, power))
+        assert all(simplifying.prove(tiles, simple, math.ldexp(0.5, power)))
+        found.append(simple)
+    assert np.array_equal(found[0].points, found[1].points)
+    assert np.array_equal(np.ldexp(found[0].z, -923), found[1].z)
+
+
 def test_heights_at_the_end_of_doubles() -> None:
     huge = float(np.finfo(float).max)
     count, _ = counter(lambda error: 20 if error > 1e308 else 10**6)

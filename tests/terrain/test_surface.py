@@ -162,6 +162,23 @@ def test_gradients_of_any_size_have_normals(unit):
     assert tin.normals == pytest.approx(expected, rel=1e-12, abs=0)
 
 
+@pytest.mark.filterwarnings("error")
+def test_heights_with_a_range_beyond_the_largest_double():
+    """Slopes and profiles are those of the same heights in a smaller unit."""
+    random = np.random.default_rng(8)
+    xy = random.random((300, 2)) * 5000
+    z = random.choice([-1, 1], 300) * random.uniform(0.1, 1.79, 300)
+    small = TIN.from_points(np.column_stack((xy, np.ldexp(z, 100))))
+    tall = TIN.from_points(np.column_stack((xy, np.ldexp(z, 1023))))
+    inside = np.isfinite(tall.gradients).all(axis=1)
+    assert inside.mean() > 0.9
+    assert np.array_equal(tall.gradients[inside], np.ldexp(small.gradients[inside], 923))
+    assert np.array_equal(tall.slope, small.slope)
+    one, two = (tin.profile([(500, 500), (4500, 4000)]) for tin in (tall, small))
+    assert np.array_equal(one.points, two.points)
+    assert np.array_equal(np.ldexp(one.z, -923), two.z)
+
+
 @pytest.mark.parametrize("block", [1 << 18, 40])
 def test_positions_on_a_slanted_side_have_heights(monkeypatch, block):
     monkeypatch.setattr(slopes, "_BLOCK", block)  # of one row, or of all

@@ -12,9 +12,14 @@ if TYPE_CHECKING:
 
 __all__ = ["thinned"]
 
+# The sum of three heights up to this one, or of their differences, does not overflow.
+_TALL = 1e307
+
 
 def thinned(way: Floats, z: Floats, fixed: Bools, limit: float) -> Bools:
     """Return which points of a profile to keep, so that others are within a vertical distance."""
+    if np.abs(z).max(initial=0.0) > _TALL:
+        z, limit = z / 8, limit / 8
     kept = fixed.copy()
     kept[:1] = kept[-1:] = True
     spans = list(pairwise(np.flatnonzero(kept).tolist()))

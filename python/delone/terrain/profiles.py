@@ -276,7 +276,11 @@ def _crossings(tin: Surface, sides: Indices, a: Floats, b: Floats) -> _Part:
     of_a, of_b = (_areas(one, two, each) for each in (tail, head))
     with np.errstate(invalid="ignore"):
         along, share = of_u / (of_u + of_v), of_a / (of_a + of_b)
-    z = tin.z[u] + along * (tin.z[v] - tin.z[u])
+    with np.errstate(over="ignore", invalid="ignore"):
+        z = tin.z[u] + along * (tin.z[v] - tin.z[u])
+    far = np.flatnonzero(~np.isfinite(z))
+    low, high = tin.z[u[far]] / 2, tin.z[v[far]] / 2
+    z[far] = 2 * (low + along[far] * (high - low))
     places = start + share[:, None] * (end - start)
     vertex = np.where(on_u, u, v)
     at = np.flatnonzero(on_u | on_v)

@@ -45,6 +45,9 @@ def gradient(points: Floats, z: Floats, simplices: Indices) -> Floats:
     # In units of the largest coordinate, without rounding: no product overflows or underflows.
     exponent = int(np.frexp(np.abs(points).max(initial=0.0))[1])
     points = np.ldexp(points, -exponent)
+    # Differences of heights overflow only near the end of the range.
+    tall = max(0, int(np.frexp(np.abs(z).max(initial=0.0))[1]) - 1000)
+    z = np.ldexp(z, -tall)
     a, b, c = (points[corner] for corner in simplices.T)
     low, mid, high = (z[corner] for corner in simplices.T)
     (ux, uy), (vx, vy) = (b - a).T, (c - a).T
@@ -52,7 +55,7 @@ def gradient(points: Floats, z: Floats, simplices: Indices) -> Floats:
     twice = 2 * measures.sizes(points, simplices)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         found: Floats = np.column_stack((du * vy - dv * uy, dv * ux - du * vx)) / twice[:, None]
-        found = np.ldexp(found, -exponent)
+        found = np.ldexp(found, tall - exponent)
     # Level triangles stay level, however thin.
     found[(du == 0) & (dv == 0)] = 0.0
     return found
@@ -72,7 +75,8 @@ def normals(slopes: Floats) -> Floats:
 
 def slope(slopes: Floats) -> Floats:
     """Return slopes in degrees."""
-    found: Floats = np.degrees(np.arctan(np.hypot(*slopes.T)))
+    with np.errstate(over="ignore"):  # beyond the range, it is vertical
+        found: Floats = np.degrees(np.arctan(np.hypot(*slopes.T)))
     return found
 
 
