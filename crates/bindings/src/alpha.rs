@@ -262,7 +262,9 @@ fn limit(name: &str, value: f64) -> Result<Limit> {
     match name {
         "length" => Ok(Limit::Length(value)),
         "ratio" => Ok(Limit::Ratio(value)),
-        _ => Err(Error::Shape(format!("no limit {name}"))),
+        _ => Err(Error::Shape(format!(
+            "the limit must be length or ratio, got {name}"
+        ))),
     }
 }
 

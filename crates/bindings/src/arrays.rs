@@ -154,7 +154,7 @@ pub fn are_starts(starts: &[i32], length: usize) -> Result<()> {
         Ok(())
     } else {
         Err(Error::Shape(format!(
-            "starts must partition {length} entries"
+            "starts must ascend from 0 to the number of entries, which is {length}"
         )))
     }
 }
@@ -213,9 +213,11 @@ pub fn flat<'a, T: Element, D: Dimension>(
     array: &'a PyReadonlyArray<'_, T, D>,
     name: &str,
 ) -> Result<&'a [T]> {
-    array
-        .as_slice()
-        .map_err(|_| Error::Shape(format!("{name} is not C-contiguous")))
+    array.as_slice().map_err(|_| {
+        Error::Shape(format!(
+            "{name} must be C-contiguous: pass np.ascontiguousarray({name})"
+        ))
+    })
 }
 
 /// A vector as an array of a shape with the same number of items.

@@ -3,6 +3,7 @@
 
 use delone_core::base::arrays::Given;
 use delone_core::base::error::{Error, Result};
+use delone_core::base::target::Target;
 use delone_core::base::watch::Watch;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -35,9 +36,7 @@ pub fn checked<'a, const D: usize, const N: usize>(
 ) -> Result<Given<'a, D, N>> {
     let given = borrowed(points, simplices, neighbors)?;
     if given.neighbors.len() != given.simplices.len() {
-        return Err(Error::Shape(
-            "neighbors and simplices differ in length".into(),
-        ));
+        return Err(not_beside());
     }
     in_range(given.simplices, 0, given.points.len(), "simplices")?;
     in_range(given.neighbors, -1, given.simplices.len(), "neighbors")?;
@@ -106,6 +105,20 @@ pub fn answered<T: Send>(
     watched(py, work)
 }
 
+/// What smoothing moves vertices to, by its name.
+pub fn target_of(name: &str) -> Result<Target> {
+    let names = Target::NAMES.map(|(name, _)| name);
+    let wrong = || Error::Shape(format!("target must be one of {names:?}, got {name:?}"));
+    Target::named(name).ok_or_else(wrong)
+}
+
+/// The error for neighbors of other simplices.
+pub fn not_beside() -> Error {
+    Error::Shape(
+        "neighbors and simplices differ in length: each simplex needs its row of neighbors".into(),
+    )
+}
+
 /// The error for arrays whose lengths do not match.
 pub fn unequal() -> Error {
     Error::Shape("arrays that belong together differ in length".into())
@@ -129,7 +142,8 @@ pub fn finite_weights<'a>(
     weights: Option<&'a PyReadonlyArray1<'_, f64>>,
     n: usize,
 ) -> Result<&'a [f64]> {
-    let wrong = || Error::Shape("each point needs one finite weight".into());
+    let wrong =
+        || Error::Shape("weights must have one finite number for each of the points".into());
     let found = weights_of(weights, n).map_err(|_| wrong())?;
     if found.iter().all(|w| w.is_finite()) {
         return Ok(found);

@@ -10,7 +10,7 @@ use crate::arrays::{
     number_rows, rows, table,
 };
 use crate::errors::Outcome;
-use crate::given::simplices_of;
+use crate::given::{not_beside, simplices_of};
 use crate::signals::watched;
 
 /// `(edges, duplicates)`.
@@ -36,7 +36,7 @@ impl Adjacency<'_> {
         are_starts(starts, neighbors.len())?;
         if starts.len() != points.len() + 1 {
             return Err(Error::Shape(
-                "starts has one entry per point and an end".into(),
+                "starts must have one entry for each point, and one more".into(),
             ));
         }
         Ok(Skeleton {
@@ -55,7 +55,9 @@ fn region(name: &str, beta: f64) -> Result<Region> {
         "ball" => Ok(Region::Ball),
         "lune" if within => Ok(Region::Lune(beta)),
         "circle" if within => Ok(Region::Arcs(beta)),
-        _ => Err(Error::Shape(format!("no region {name} with beta {beta}"))),
+        _ => Err(Error::Shape(format!(
+            "the region must be ball, or lune or circle with beta above 1 up to 2; got {name} with {beta}"
+        ))),
     }
 }
 
@@ -102,7 +104,7 @@ pub fn antipodes(
             let neighbors: &[[i32; N]] = rows(neighbors, "neighbors")?;
             in_range(neighbors, -1, simplices.len(), "neighbors")?;
             if neighbors.len() != simplices.len() {
-                return Err(Error::Shape("neighbors and simplices do not match".into()));
+                return Err(not_beside());
             }
             Ok((skeleton, Some((simplices, neighbors))))
         })()?;
@@ -164,7 +166,7 @@ pub fn not_longer(
         in_range(edges, 0, points.len(), "edges")?;
         let ends: &[[f64; D]; 2] = rows(&ends, "ends")?
             .try_into()
-            .map_err(|_| Error::Shape("ends has other than two rows".into()))?;
+            .map_err(|_| Error::Shape("ends must have two rows, those of the segment".into()))?;
         let ends = *ends;
         let found = watched(py, |watch| {
             graphs::not_longer(points, edges, ends, workers, watch)
@@ -210,7 +212,7 @@ impl Tiling<'_> {
         let neighbors = rows(&self.2, "neighbors")?;
         in_range(neighbors, -1, simplices.len(), "neighbors")?;
         if neighbors.len() != simplices.len() {
-            return Err(Error::Shape("neighbors and simplices do not match".into()));
+            return Err(not_beside());
         }
         Ok((points, simplices, neighbors))
     }
@@ -231,7 +233,9 @@ pub fn of_triangles2(
             ("longest", _) => Rule::Longest,
             ("ball", _) => Rule::Ball { closed },
             ("circle", true) => Rule::Arcs { beta, closed },
-            _ => return Err(Error::Shape(format!("no rule {name} with beta {beta}")).into()),
+            _ => return Err(Error::Shape(format!(
+                "the rule must be longest, ball, or circle with beta above 1 up to 2; got {name} with {beta}"
+            )).into()),
         };
         (tiling.triangles()?, rule)
     };

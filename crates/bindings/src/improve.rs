@@ -2,13 +2,13 @@
 
 use delone_core::base::error::Result;
 use delone_core::base::error::{Error, Result as CoreResult};
-use delone_core::base::target::Target;
 use delone_core::solids::improve::{self, Improved, Task};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, flat, in_range, rows, table};
 use crate::errors::Outcome;
+use crate::given::target_of;
 use crate::results::Passes;
 use crate::signals::watched;
 
@@ -122,9 +122,7 @@ pub fn smooth3<'py>(
     target: &str,
     rounds: usize,
 ) -> Outcome<ImprovedMesh> {
-    let Some(target) = Target::named(target) else {
-        return Err(Error::Shape(format!("unknown target {target}")).into());
-    };
+    let target = target_of(target)?;
     let given = Given {
         removable: PyArray1::zeros(py, 0, false).readonly(),
         points,

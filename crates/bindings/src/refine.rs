@@ -3,9 +3,8 @@
 use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
-use delone_core::base::error::{Error, Result};
+use delone_core::base::error::Result;
 use delone_core::base::memory::copied;
-use delone_core::base::target::Target;
 use delone_core::base::watch::Watch;
 use delone_core::refine::smooth;
 use delone_core::refine::{Lines, Refined, Rounds, Samples, Task, judge, refine_telling};
@@ -14,7 +13,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, each_in_range, flat, numbers, rows, table};
 use crate::errors::Outcome;
-use crate::given::{checked, pairs, simplices_of, unequal};
+use crate::given::{checked, pairs, simplices_of, target_of, unequal};
 use crate::live::{broken, locked};
 use crate::results::Progress;
 use crate::signals::{stoppable, watched};
@@ -422,9 +421,7 @@ pub fn smooth2(
     if sides.len() != given.simplices.len() || free.len() != given.points.len() {
         return Err(unequal().into());
     }
-    let Some(target) = Target::named(target) else {
-        return Err(Error::Shape(format!("unknown target {target:?}")).into());
-    };
+    let target = target_of(target)?;
     let mesh = smooth::Domain {
         points: copied(given.points)?,
         simplices: copied(given.simplices)?,

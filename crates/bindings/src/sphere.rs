@@ -2,7 +2,7 @@
 
 use delone_core::Point3;
 use delone_core::base::arrays::Arrays;
-use delone_core::base::error::{Error, Result};
+use delone_core::base::error::Result;
 use delone_core::base::memory::copied;
 use delone_core::base::watch::Watch;
 use delone_core::interpolate::sphere::{Kind, Queries, weights};
@@ -18,7 +18,7 @@ use crate::arrays::{
 };
 use crate::constrained::ConstrainedTriangulation;
 use crate::errors::Outcome;
-use crate::given::{pairs, unequal};
+use crate::given::{not_beside, pairs, unequal};
 use crate::signals::watched;
 
 /// A Delaunay triangulation of directions.
@@ -177,8 +177,7 @@ pub fn sphere_dual(
     let (vectors, simplices) = given(&vectors, &simplices)?;
     let neighbors: &[[i32; 3]] = rows(&neighbors, "neighbors")?;
     if neighbors.len() != simplices.len() {
-        let error = Error::Shape("simplices and neighbors must be equally many".into());
-        return Err(error.into());
+        return Err(not_beside().into());
     }
     in_range(neighbors, -1, simplices.len(), "neighbors")?;
     let (facets, made) = watched(py, |watch| {
@@ -285,8 +284,9 @@ impl SphereLocator {
         sloped: bool,
         workers: usize,
     ) -> Outcome<SphereWeights> {
-        let kind = Kind::named(kind)
-            .ok_or_else(|| PyValueError::new_err(format!("unknown kind {kind:?}")))?;
+        let names = Kind::NAMES.map(|(name, _)| name);
+        let wrong = || format!("kind must be one of {names:?}, got {kind:?}");
+        let kind = Kind::named(kind).ok_or_else(|| PyValueError::new_err(wrong()))?;
         let queries = Queries {
             vectors: rows(&xi, "xi")?,
             simplices: flat(&simplex, "simplex")?,
