@@ -54,7 +54,7 @@ def require_bounds(low: Floats, high: Floats) -> None:
 
 
 def require_values(values: Floats) -> None:
-    """Reject values whose range overflows in the color scales of matplotlib; NaN is no value."""
+    """Reject values whose range overflows in the color scales of matplotlib; NaN is ignored."""
     if np.nanmax(np.abs(values), initial=0) > _DRAWABLE[1]:
         raise InputError(
             f"a plot cannot hold values beyond {_DRAWABLE[1]:g}: divide all values by a power of "
