@@ -1835,6 +1835,7 @@ def contour_bands2(
     limit: int,
     collapsed: NDArray[np.bool_],
     far: bool,
+    workers: int,
 ) -> ContourBands:
     """The bands of a surface between levels, below the first and above the last; see
     `contour_lines2`.
@@ -1846,6 +1847,7 @@ def contour_lines2(
     limit: int,
     collapsed: NDArray[np.bool_],
     far: bool,
+    workers: int,
 ) -> ContourLines:
     """The contour lines of a surface, with higher ground to their left. Those in triangles
     of `collapsed`, which may be empty, pass through vertices; `far` allows points of

@@ -273,11 +273,11 @@ def test_contours_do_not_cross_where_triangles_are_collapsed(kind):
     sheet, levels = tin._sheet(), np.linspace(tin.z.min(), tin.z.max(), 9)
     for share in (0.1, 0.5, 1.0):
         collapsed = np.random.default_rng(3).random(len(tin.simplices)) < share
-        made = _core.contour_lines2(sheet, levels, 10**6, collapsed, True)
+        made = _core.contour_lines2(sheet, levels, 10**6, collapsed, True, 1)
         while len(made.tangled):
             assert not collapsed[made.tangled].any()
             collapsed[made.tangled] = True
-            made = _core.contour_lines2(sheet, levels, 10**6, collapsed, True)
+            made = _core.contour_lines2(sheet, levels, 10**6, collapsed, True, 1)
         # Lines of several levels may pass along the same edge.
         assert_nothing_crosses({tuple(sorted(s)) for s in segments_of(made.points, made.starts)})
         assert len(made.starts) > 1
@@ -296,6 +296,25 @@ def test_thin_triangles_inside_have_contours(seed):
     found = tin.contours(interval=0.37)
     assert_nothing_crosses({tuple(sorted(s)) for s in segments_of(found.points, found.starts)})
     assert shapely.is_valid(tin.bands(found.levels).to_shapely()).all()
+
+
+@pytest.mark.parametrize("step", [1.0, 0.01])
+def test_any_number_of_workers_draws_the_same(step):
+    """With triangles for several threads, and levels with many and with few points."""
+    rng = np.random.default_rng(4)
+    xy = rng.random((30_000, 2))
+    z = np.round(9 * np.sin(7 * xy[:, 0]) * np.cos(5 * xy[:, 1]) + rng.random(len(xy)), 2)
+    made = []
+    for workers in (1, 2, 3, 16):
+        tin = TIN.from_points(np.column_stack((xy, z)), workers=workers)
+        levels = np.arange(-12, 12, step)
+        lines, areas = tin.contours(levels), tin.bands(levels[::10])
+        made.append([lines.points, lines.starts, lines.level, areas.points, areas.ring_starts])
+        made[-1] += [areas.polygon_starts, areas.low]
+    assert len(made[0][1]) > 30
+    for other in made[1:]:
+        for one, another in zip(made[0], other, strict=True):
+            assert np.array_equal(one, another)
 
 
 @pytest.mark.parametrize("rounds", [1, 2, 3, 5])

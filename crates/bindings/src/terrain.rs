@@ -73,13 +73,15 @@ pub fn contour_lines2(
     limit: usize,
     collapsed: PyReadonlyArray1<'_, bool>,
     far: bool,
+    workers: usize,
 ) -> Outcome<ContourLines> {
     let (surface, levels) = (
         surface.surface()?,
         (levels_of(&levels)?, flat(&collapsed, "collapsed")?),
     );
     let found = watched(py, |watch| {
-        contour::lines(surface.given, surface.heights, levels, far, limit, watch)
+        let threads = (workers, watch);
+        contour::lines(surface.given, surface.heights, levels, far, limit, threads)
     })?;
     Ok(ContourLines {
         points: table(py, found.points)?,
@@ -98,13 +100,15 @@ pub fn contour_bands2(
     limit: usize,
     collapsed: PyReadonlyArray1<'_, bool>,
     far: bool,
+    workers: usize,
 ) -> Outcome<ContourBands> {
     let (surface, levels) = (
         surface.surface()?,
         (levels_of(&levels)?, flat(&collapsed, "collapsed")?),
     );
     let found = watched(py, |watch| {
-        contour::bands(surface.given, surface.heights, levels, far, limit, watch)
+        let threads = (workers, watch);
+        contour::bands(surface.given, surface.heights, levels, far, limit, threads)
     })?;
     Ok(ContourBands {
         points: table(py, found.points)?,

@@ -246,7 +246,16 @@ fn contours() -> Outcome {
     let levels: Vec<f64> = (-20..20).map(|k| f64::from(k) / 128.0).collect();
     let Surface { given, heights } = sheet.surface();
     let watch = &Watch::idle();
-    counted(|| contour::lines(given, heights, (&levels, &[]), false, usize::MAX, watch))?;
+    counted(|| {
+        contour::lines(
+            given,
+            heights,
+            (&levels, &[]),
+            false,
+            usize::MAX,
+            (1, watch),
+        )
+    })?;
     Ok(())
 }
 

@@ -81,7 +81,8 @@ def summary(triangulation: Mesh) -> dict[str, Any]:
     If triangles have been removed, there are no expected numbers.
     """
     n, m = triangulation.npoints, triangulation.nsimplex
-    distinct = n - len(triangulation.coplanar)
+    repeated = repeated_rows(triangulation)
+    distinct = n - repeated["count"]
     rim = int(np.count_nonzero(triangulation.neighbors < 0))
     edges = (3 * m - rim) // 2 + rim
     whole = _is_whole(triangulation)
@@ -91,7 +92,7 @@ def summary(triangulation: Mesh) -> dict[str, Any]:
     return {
         "points": n,
         "distinct": distinct,
-        "duplicates": repeated_rows(triangulation),
+        "duplicates": repeated,
         "hull_vertices": h,
         "triangles": {"count": m, "expected": 2 * distinct - h - 2 if whole else None},
         "edges": {"count": edges, "expected": 3 * distinct - h - 3 if whole else None},
@@ -141,13 +142,15 @@ def area(triangulation: Mesh) -> float:
 
 def repeated_rows(triangulation: Mesh) -> dict[str, Any]:
     """Return the number of duplicates, and the first ones with their coordinates."""
-    rows = triangulation.coplanar[:_FIRST_DUPLICATES]
-    places = triangulation.points[rows[:, 0]].tolist()
+    of = triangulation.duplicate_of
+    repeated = np.flatnonzero(of != np.arange(len(of)))
+    rows = repeated[:_FIRST_DUPLICATES]
+    places = triangulation.points[rows].tolist()
     first = [
         {"row": row, "same_as": same, **dict(zip("xyz", place, strict=False))}
-        for (row, _, same), place in zip(rows.tolist(), places, strict=True)
+        for row, same, place in zip(rows.tolist(), of[rows].tolist(), places, strict=True)
     ]
-    return {"count": len(triangulation.coplanar), "first": first}
+    return {"count": len(repeated), "first": first}
 
 
 def peak_memory() -> int | None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import LARGEST_LIMIT, as_count, as_number, as_plain_array
+from delone._base.arrays import LARGEST_LIMIT, as_count, as_number, as_plain_array, as_workers
 from delone._base.counting import counted
 from delone._base.decimals import exact, multiples
 from delone._base.extras import require
@@ -683,10 +683,10 @@ def _within(
     The core counts them before it computes them. Also return the surface that they belong to, and
     the number of triangles that were left out.
     """
-    limit = as_count(max_points, name="max_points")
+    limit, workers = as_count(max_points, name="max_points"), as_workers(tin.workers)
     try:
         return drawn(
-            lambda sheet, *how: compute(sheet, levels, limit // factor, *how),
+            lambda sheet, *how: compute(sheet, levels, limit // factor, *how, workers),
             tin._sheet(),
         )
     except BudgetExceededError as error:

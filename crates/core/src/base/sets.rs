@@ -19,6 +19,17 @@ impl Sets {
         Ok(Self { parents })
     }
 
+    /// Sets by the parent of each number, which is not larger.
+    pub fn with_parents(parents: Vec<u32>) -> Self {
+        debug_assert!(
+            parents
+                .iter()
+                .zip(0..)
+                .all(|(&parent, number)| parent <= number)
+        );
+        Self { parents }
+    }
+
     /// The root of a number; paths are halved.
     #[inline]
     pub fn root(&mut self, mut number: u32) -> u32 {

@@ -333,7 +333,7 @@ def _lines(levels: Floats, wanted: tuple[int, int], files: list[str], state: _St
     start, stop = max(low - 1, 0), min(high + 1, len(levels))
     collapsed = _among(patch.numbers, state.collapsed)
     # The number of points was counted before.
-    made = _core.contour_lines2(sheet, levels[start:stop], 2**31 - 1, collapsed, state.far)
+    made = _core.contour_lines2(sheet, levels[start:stop], 2**31 - 1, collapsed, state.far, 1)
     # All pieces are in the same folder.
     lines = str(Path(files[0]).with_name(f"lines-{low}.npz"))
     if len(made.tangled):

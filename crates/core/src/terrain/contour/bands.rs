@@ -8,19 +8,18 @@
 
 use delone_predicates::lexicographic;
 
-use super::lines::rotate;
-use super::link::{Edge, Linker, is_counterclockwise};
-use super::nodes::{Crossed, Nodes};
+use super::edges::{Edges, Local};
+use super::lines::each_chord;
+use super::link::{Edge, is_counterclockwise, link, rotate};
+use super::nodes::{Nodes, SHARE};
 use super::untangle::untangle;
 use crate::base::arrays::Triangles;
 use crate::base::error::Result;
-use crate::base::memory::{filled, make_room, push, with_room};
+use crate::base::memory::{make_room, push, with_room};
+use crate::base::parallel::map_watched;
 use crate::base::sets::Sets;
 use crate::base::watch::Watch;
 use delone_predicates::Point2;
-
-/// Triangles between two checks for interruption.
-const WATCH_EVERY: usize = 1 << 14;
 
 /// Polygons as runs of rings, which are runs of coordinates.
 #[derive(Debug, Default)]
@@ -52,10 +51,11 @@ pub fn bands(
     (levels, collapsed): (&[f64], &[bool]),
     far: bool,
     limit: usize,
-    watch: &Watch,
+    (workers, watch): (usize, &Watch),
 ) -> Result<Bands> {
-    let mut nodes = Nodes::new(given, heights, (levels, collapsed), limit, watch)?;
-    let tangled = untangle(&mut nodes, far, watch)?;
+    let threads = (workers, watch);
+    let mut nodes = Nodes::new(given, heights, (levels, collapsed), limit, threads)?;
+    let tangled = untangle(&mut nodes, far, threads)?;
     if !tangled.is_empty() {
         return Ok(Bands {
             tangled,
@@ -63,41 +63,67 @@ pub fn bands(
         });
     }
     let mut pieces = Pieces::new(&nodes, watch)?;
-    let (starts, edges) = boundaries(&nodes, &pieces, watch)?;
-    let mut linker = Linker::new(nodes.len())?;
+    let count = levels.len() as u32 + 1;
+    let edges = Edges::collect(&nodes, count as usize, threads, |t, side| {
+        each_side(&nodes, &pieces, t, side);
+    })?;
+    let linked = map_watched(workers, (0..count).collect(), watch, |band| {
+        Linked::of(&nodes, edges.group(band)?)
+    })?;
+    drop(edges);
     let mut found = Bands::default();
     push(&mut found.rings, 0)?;
     push(&mut found.polygons, 0)?;
-    for (band, range) in starts.windows(2).enumerate() {
+    for (band, mut linked) in linked.into_iter().enumerate() {
         watch.check()?;
-        let mut rings = Vec::new();
-        let mut places = Vec::new();
-        linker.link(&nodes, &edges[range[0]..range[1]], |line, piece| {
+        for [a, b] in linked.joined {
+            pieces.sets.join(a, b);
+        }
+        for ring in &mut linked.rings {
+            ring.piece = pieces.sets.root(ring.piece);
+        }
+        found.add(&nodes, &linked.places, linked.rings, band as i32)?;
+    }
+    Ok(found)
+}
+
+/// The rings of a band, and the owners of edges that were dropped.
+struct Linked {
+    places: Vec<u32>,
+    rings: Vec<Ring>,
+    joined: Vec<[u32; 2]>,
+}
+
+impl Linked {
+    fn of(nodes: &Nodes, mut edges: Vec<Edge>) -> Result<Self> {
+        let Local { places, at } = Local::of(nodes, &mut edges)?;
+        let (mut rings, mut numbers) = (Vec::new(), Vec::new());
+        let joined = link(&at, &edges, |line, piece| {
             // What bounds a region is closed.
             if line.first() != line.last() {
                 return Ok(());
             }
-            let start = places.len();
-            make_room(&mut places, line.len())?;
-            places.extend_from_slice(line);
-            rotate(&nodes, &mut places[start..]);
+            let start = numbers.len();
+            make_room(&mut numbers, line.len())?;
+            numbers.extend_from_slice(line);
+            rotate(&at, &mut numbers[start..]);
             let ring = Ring {
                 piece,
-                hole: !is_counterclockwise(&nodes, &places[start..]),
+                hole: !is_counterclockwise(&at, &numbers[start..]),
                 start,
-                end: places.len(),
+                end: numbers.len(),
             };
             push(&mut rings, ring)
         })?;
-        for &[a, b] in &linker.joined {
-            pieces.sets.join(a, b);
-        }
-        for ring in &mut rings {
-            ring.piece = pieces.sets.root(ring.piece);
-        }
-        found.add(&nodes, &places, rings, band as i32)?;
+        numbers
+            .iter_mut()
+            .for_each(|number| *number = places[*number as usize]);
+        Ok(Self {
+            places: numbers,
+            rings,
+            joined,
+        })
     }
-    Ok(found)
 }
 
 impl Bands {
@@ -159,14 +185,14 @@ impl Pieces {
         let mut first = with_room(nodes.triangles())?;
         let mut count = 0;
         for t in 0..nodes.triangles() {
-            let crossed = nodes.crossed(t);
+            let [lowest, highest] = nodes.span(t);
             first.push(count);
-            count += crossed.ranks[2] - crossed.ranks[0] + 1;
+            count += highest - lowest + 1;
         }
         let sets = Sets::of(count as usize)?;
         let mut pieces = Self { first, sets };
         for t in 0..nodes.triangles() {
-            if t.is_multiple_of(WATCH_EVERY) {
+            if t.is_multiple_of(SHARE) {
                 watch.check()?;
             }
             for k in 0..3 {
@@ -185,7 +211,7 @@ impl Pieces {
 
     /// The piece of a triangle in a band.
     fn of(&self, nodes: &Nodes, t: usize, band: u32) -> u32 {
-        self.first[t] + band - nodes.crossed(t).ranks[0]
+        self.first[t] + band - nodes.span(t)[0]
     }
 }
 
@@ -211,94 +237,35 @@ fn along(nodes: &Nodes, t: usize, k: usize, mut part: impl FnMut(u32, u32, u32))
     part(to, last, b);
 }
 
-/// The boundaries of all bands: the start of each band, and the edges, owned by pieces.
-fn boundaries(nodes: &Nodes, pieces: &Pieces, watch: &Watch) -> Result<(Vec<usize>, Vec<Edge>)> {
-    let bands = nodes.levels + 1;
-    let mut starts = filled(bands + 1, 0)?;
-    each_side(nodes, pieces, watch, |band, _| {
-        starts[band as usize + 1] += 1
-    })?;
-    for band in 0..bands {
-        starts[band + 1] += starts[band];
-    }
-    let none = Edge {
-        from: 0,
-        to: 0,
-        owner: 0,
-    };
-    let mut edges = filled(starts[bands], none)?;
-    let mut next = starts.clone();
-    each_side(nodes, pieces, watch, |band, edge| {
-        edges[next[band as usize]] = edge;
-        next[band as usize] += 1;
-    })?;
-    Ok((starts, edges))
-}
-
-/// Calls `side` with each edge that has a length and its band to the left.
-fn each_side(
-    nodes: &Nodes,
-    pieces: &Pieces,
-    watch: &Watch,
-    mut side: impl FnMut(u32, Edge),
-) -> Result<()> {
-    for t in 0..nodes.triangles() {
-        if t.is_multiple_of(WATCH_EVERY) {
-            watch.check()?;
-        }
-        let crossed = nodes.crossed(t);
-        each_chord(nodes, t, &crossed, pieces.first[t], &mut side);
-        for k in 0..3 {
-            if nodes.twin(t, k).is_none() {
-                along(nodes, t, k, |band, from, to| {
-                    if from != to {
-                        let owner = pieces.first[t] + band - crossed.ranks[0];
-                        side(band, Edge { from, to, owner });
-                    }
-                });
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Calls `side` with both directions of each contour in a triangle: once for the band above it, and
-/// once for the band below.
-fn each_chord(
-    nodes: &Nodes,
-    t: usize,
-    crossed: &Crossed,
-    first: u32,
-    side: &mut impl FnMut(u32, Edge),
-) {
-    for level in crossed.ranks[0]..crossed.ranks[2] {
-        let [left, right] = nodes
-            .chord(t, crossed, level)
-            .map(|place| nodes.find(place));
-        if left == right {
-            continue;
-        }
-        let (from, to) = if crossed.even {
-            (left, right)
-        } else {
-            (right, left)
-        };
-        let below = first + level - crossed.ranks[0];
-        side(
-            level + 1,
-            Edge {
+/// Calls `side` with each edge in a triangle that has a length and its band to the left: both directions
+/// of each contour, once for the band above it and once for the band below, and parts of the outline.
+fn each_side(nodes: &Nodes, pieces: &Pieces, t: usize, side: &mut dyn FnMut(u32, Edge)) {
+    let (first, [lowest, _]) = (pieces.first[t], nodes.span(t));
+    if let Some(crossed) = nodes.crossed(t) {
+        each_chord(nodes, &crossed, |level, from, to| {
+            let owner = first + level - lowest;
+            let above = Edge {
                 from,
                 to,
-                owner: below + 1,
-            },
-        );
-        side(
-            level,
-            Edge {
+                owner: owner + 1,
+            };
+            side(level + 1, above);
+            let below = Edge {
                 from: to,
                 to: from,
-                owner: below,
-            },
-        );
+                owner,
+            };
+            side(level, below);
+        });
+    }
+    for k in 0..3 {
+        if nodes.twin(t, k).is_none() {
+            along(nodes, t, k, |band, from, to| {
+                if from != to {
+                    let owner = first + band - lowest;
+                    side(band, Edge { from, to, owner });
+                }
+            });
+        }
     }
 }

@@ -1,18 +1,19 @@
 //! Contour lines: for each level lines from outline to outline, and rings.
 
+use std::ops::Range;
+
 use delone_predicates::lexicographic;
 
-use super::link::{Edge, Linker, first_of};
-use super::nodes::Nodes;
+use super::edges::{Edges, Local};
+use super::link::{Edge, link, rotate};
+use super::nodes::{Crossed, Nodes};
 use super::untangle::untangle;
 use crate::base::arrays::Triangles;
 use crate::base::error::Result;
-use crate::base::memory::{filled, make_room, push, with_room};
+use crate::base::memory::{make_room, push, with_room, zeroed};
+use crate::base::parallel::map_watched;
 use crate::base::watch::Watch;
 use delone_predicates::Point2;
-
-/// Triangles between two checks for interruption.
-const WATCH_EVERY: usize = 1 << 14;
 
 /// Lines as runs of coordinates.
 #[derive(Debug, Default)]
@@ -37,108 +38,118 @@ pub fn lines(
     (levels, collapsed): (&[f64], &[bool]),
     far: bool,
     limit: usize,
-    watch: &Watch,
+    (workers, watch): (usize, &Watch),
 ) -> Result<Lines> {
-    let mut nodes = Nodes::new(given, heights, (levels, collapsed), limit, watch)?;
-    let tangled = untangle(&mut nodes, far, watch)?;
+    let threads = (workers, watch);
+    let mut nodes = Nodes::new(given, heights, (levels, collapsed), limit, threads)?;
+    let tangled = untangle(&mut nodes, far, threads)?;
     if !tangled.is_empty() {
         return Ok(Lines {
             tangled,
             ..Lines::default()
         });
     }
-    let (starts, edges) = chords(&nodes, watch)?;
-    let mut linker = Linker::new(nodes.len())?;
-    let mut found = Lines::default();
-    push(&mut found.starts, 0)?;
-    for (level, range) in starts.windows(2).enumerate() {
-        watch.check()?;
-        let mut runs = Vec::new();
-        let mut places = Vec::new();
-        linker.link(&nodes, &edges[range[0]..range[1]], |line, _| {
-            let start = places.len();
-            make_room(&mut places, line.len())?;
-            places.extend_from_slice(line);
-            if line.first() == line.last() {
-                let ring = &mut places[start..];
-                rotate(&nodes, ring);
-            }
-            push(&mut runs, start..places.len())
-        })?;
-        runs.sort_by(|a, b| {
-            let second = |run: &std::ops::Range<usize>| nodes.at(places[run.start + 1]);
-            let first = |run: &std::ops::Range<usize>| nodes.at(places[run.start]);
-            lexicographic(first(a), first(b)).then_with(|| lexicographic(second(a), second(b)))
-        });
-        make_room(&mut found.points, places.len())?;
-        for run in runs {
-            found
-                .points
-                .extend(places[run].iter().map(|&place| nodes.at(place)));
-            push(&mut found.starts, found.points.len() as i64)?;
-            push(&mut found.levels, level as i32)?;
+    let edges = Edges::collect(&nodes, levels.len(), threads, |t, chord| {
+        if let Some(crossed) = nodes.crossed(t) {
+            each_chord(&nodes, &crossed, |level, from, to| {
+                let owner = t as u32;
+                chord(level, Edge { from, to, owner });
+            });
         }
-    }
-    Ok(found)
-}
-
-/// Lets a ring start at its first place in lexicographic order.
-pub fn rotate(nodes: &Nodes, ring: &mut [u32]) {
-    let first = first_of(nodes, ring);
-    let count = ring.len() - 1;
-    ring[..count].rotate_left(first);
-    ring[count] = ring[0];
-}
-
-/// The contours in all triangles, by level: the start of each level, and the edges.
-fn chords(nodes: &Nodes, watch: &Watch) -> Result<(Vec<usize>, Vec<Edge>)> {
-    let mut starts = filled(nodes.levels + 1, 0)?;
-    each_chord(nodes, watch, |level, _| starts[level + 1] += 1)?;
-    for level in 0..nodes.levels {
-        starts[level + 1] += starts[level];
-    }
-    let mut edges = with_room(starts[nodes.levels])?;
-    let none = Edge {
-        from: 0,
-        to: 0,
-        owner: 0,
-    };
-    edges.resize(starts[nodes.levels], none);
-    let mut next = starts.clone();
-    each_chord(nodes, watch, |level, edge| {
-        edges[next[level]] = edge;
-        next[level] += 1;
     })?;
-    Ok((starts, edges))
+    let linked = map_watched(
+        workers,
+        (0..levels.len() as u32).collect(),
+        watch,
+        |level| Linked::of(&nodes, edges.group(level)?),
+    )?;
+    drop(edges);
+    joined(&nodes, &linked, threads)
 }
 
-/// Calls `chord` with each contour in each triangle that has a length, higher ground to its left.
-fn each_chord(nodes: &Nodes, watch: &Watch, mut chord: impl FnMut(usize, Edge)) -> Result<()> {
-    for t in 0..nodes.triangles() {
-        if t.is_multiple_of(WATCH_EVERY) {
-            watch.check()?;
-        }
-        let crossed = nodes.crossed(t);
-        for level in crossed.ranks[0]..crossed.ranks[2] {
-            let [left, right] = nodes
-                .chord(t, &crossed, level)
-                .map(|place| nodes.find(place));
-            if left != right {
-                let (from, to) = if crossed.even {
-                    (left, right)
-                } else {
-                    (right, left)
-                };
-                chord(
-                    level as usize,
-                    Edge {
-                        from,
-                        to,
-                        owner: t as u32,
-                    },
-                );
-            }
+/// Calls `chord` with the level and both ends of each contour of a triangle that has a length, higher
+/// ground to its left.
+pub fn each_chord(nodes: &Nodes, crossed: &Crossed, mut chord: impl FnMut(u32, u32, u32)) {
+    for level in crossed.ranks[0]..crossed.ranks[2] {
+        let [left, right] = crossed.chord(level).map(|place| nodes.find(place));
+        if left != right {
+            let (from, to) = if crossed.even {
+                (left, right)
+            } else {
+                (right, left)
+            };
+            chord(level, from, to);
         }
     }
-    Ok(())
+}
+
+/// The lines of a level, in their order.
+struct Linked {
+    places: Vec<u32>,
+    /// The end of each line in the places.
+    ends: Vec<u32>,
+}
+
+impl Linked {
+    fn of(nodes: &Nodes, mut edges: Vec<Edge>) -> Result<Self> {
+        let local = Local::of(nodes, &mut edges)?;
+        let mut runs: Vec<Range<usize>> = Vec::new();
+        let mut numbers = Vec::new();
+        link(&local.at, &edges, |line, _| {
+            let start = numbers.len();
+            make_room(&mut numbers, line.len())?;
+            numbers.extend_from_slice(line);
+            if line.first() == line.last() {
+                rotate(&local.at, &mut numbers[start..]);
+            }
+            push(&mut runs, start..numbers.len())
+        })?;
+        drop(edges);
+        let at = |place: usize| local.at[numbers[place] as usize];
+        runs.sort_by(|a, b| {
+            lexicographic(at(a.start), at(b.start))
+                .then_with(|| lexicographic(at(a.start + 1), at(b.start + 1)))
+        });
+        let (mut places, mut ends) = (with_room(numbers.len())?, with_room(runs.len())?);
+        for run in runs {
+            places.extend(
+                numbers[run]
+                    .iter()
+                    .map(|&number| local.places[number as usize]),
+            );
+            ends.push(places.len() as u32);
+        }
+        Ok(Self { places, ends })
+    }
+}
+
+/// The lines of all levels.
+fn joined(nodes: &Nodes, linked: &[Linked], (workers, watch): (usize, &Watch)) -> Result<Lines> {
+    let count = |of: fn(&Linked) -> usize| linked.iter().map(of).sum::<usize>();
+    let mut points = zeroed(count(|level| level.places.len()))?;
+    let lines = count(|level| level.ends.len());
+    let (mut starts, mut levels) = (with_room(lines + 1)?, with_room(lines)?);
+    starts.push(0);
+    let mut tasks = with_room(linked.len())?;
+    let (mut rest, mut start) = (&mut points[..], 0);
+    for (number, level) in linked.iter().enumerate() {
+        starts.extend(level.ends.iter().map(|&end| start + i64::from(end)));
+        levels.resize(starts.len() - 1, number as i32);
+        start += level.places.len() as i64;
+        let (own, after) = rest.split_at_mut(level.places.len());
+        rest = after;
+        tasks.push((own, level));
+    }
+    map_watched(workers, tasks, watch, |(points, level)| {
+        for (point, &place) in points.iter_mut().zip(&level.places) {
+            *point = nodes.at(place);
+        }
+        Ok(())
+    })?;
+    Ok(Lines {
+        tangled: Vec::new(),
+        points,
+        starts,
+        levels,
+    })
 }

@@ -9,15 +9,14 @@
 
 use std::cmp::Ordering;
 
-use delone_predicates::{Sign, lexicographic, orient2d};
+use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 
-use super::nodes::Nodes;
 use crate::base::error::Result;
-use crate::base::memory::{clear_with_room, filled, push};
+use crate::base::memory::{filled, push};
 
 const NONE: u32 = u32::MAX;
 
-/// A directed edge between representatives, and a number of the caller.
+/// A directed edge between places, and a number of the caller.
 #[derive(Clone, Copy)]
 pub struct Edge {
     /// Where it starts.
@@ -28,73 +27,60 @@ pub struct Edge {
     pub owner: u32,
 }
 
-/// Joins the edges of one level or band after the other.
-pub struct Linker {
-    /// The last edge that leaves each place.
+/// The edges of one level or band, and what is known about them.
+struct Linker<'a> {
+    /// The positions of the places.
+    at: &'a [Point2],
+    edges: &'a [Edge],
+    /// The last edge that leaves or reaches each place, and whether there are several.
     leaving: Vec<u32>,
-    /// Whether several edges leave or reach each place, and where it is in the current path.
-    several: Vec<bool>,
     reached: Vec<u32>,
-    at: Vec<u32>,
+    several: Vec<bool>,
+    /// Where each place is in the current path.
+    visited: Vec<u32>,
     // For each edge: the one that follows, whether another precedes it, and whether it is done.
     next: Vec<u32>,
     preceded: Vec<bool>,
     done: Vec<bool>,
-    /// The owners of each edge that was dropped and its reverse, which are on the same side now.
-    pub joined: Vec<[u32; 2]>,
 }
 
-impl Linker {
-    /// Room for `places`.
-    pub fn new(places: usize) -> Result<Self> {
-        Ok(Self {
-            leaving: filled(places, NONE)?,
-            several: filled(places, false)?,
-            reached: filled(places, NONE)?,
-            at: filled(places, NONE)?,
-            next: Vec::new(),
-            preceded: Vec::new(),
-            done: Vec::new(),
-            joined: Vec::new(),
-        })
-    }
-
-    /// Calls `line` with the places of each simple line, and with those of each simple ring, which
-    /// ends where it starts; and with the owner of one of its edges.
-    pub fn link(
-        &mut self,
-        nodes: &Nodes,
-        edges: &[Edge],
-        mut line: impl FnMut(&[u32], u32) -> Result<()>,
-    ) -> Result<()> {
-        clear_with_room(&mut self.next, edges.len())?;
-        self.next.resize(edges.len(), NONE);
-        clear_with_room(&mut self.preceded, edges.len())?;
-        self.preceded.resize(edges.len(), false);
-        clear_with_room(&mut self.done, edges.len())?;
-        self.done.resize(edges.len(), false);
-        self.follow(nodes, edges)?;
-        let mut path = Vec::new();
-        // Lines start where no edge precedes; the rest are rings.
-        for rings in [false, true] {
-            for e in 0..edges.len() {
-                if !self.done[e] && (rings || !self.preceded[e]) {
-                    self.trace(edges, e, &mut path, &mut line)?;
-                }
+/// Joins edges between places with the positions `at`. Calls `line` with the places of each simple line,
+/// and with those of each simple ring, which ends where it starts; and with the owner of one of its edges.
+///
+/// Returns the owners of each edge that is dropped and its reverse, which are on the same side then.
+pub fn link(
+    at: &[Point2],
+    edges: &[Edge],
+    mut line: impl FnMut(&[u32], u32) -> Result<()>,
+) -> Result<Vec<[u32; 2]>> {
+    let mut linker = Linker {
+        at,
+        edges,
+        leaving: filled(at.len(), NONE)?,
+        reached: filled(at.len(), NONE)?,
+        several: filled(at.len(), false)?,
+        visited: filled(at.len(), NONE)?,
+        next: filled(edges.len(), NONE)?,
+        preceded: filled(edges.len(), false)?,
+        done: filled(edges.len(), false)?,
+    };
+    let joined = linker.follow()?;
+    let mut path = Vec::new();
+    // Lines start where no edge precedes; the rest are rings.
+    for rings in [false, true] {
+        for e in 0..edges.len() {
+            if !linker.done[e] && (rings || !linker.preceded[e]) {
+                linker.trace(e, &mut path, &mut line)?;
             }
         }
-        for edge in edges {
-            for place in [edge.from, edge.to] {
-                self.leaving[place as usize] = NONE;
-                self.reached[place as usize] = NONE;
-                self.several[place as usize] = false;
-            }
-        }
-        Ok(())
     }
+    Ok(joined)
+}
 
-    /// Finds the edge that follows each edge.
-    fn follow(&mut self, nodes: &Nodes, edges: &[Edge]) -> Result<()> {
+impl Linker<'_> {
+    /// Finds the edge that follows each edge; returns what `cancel` does.
+    fn follow(&mut self) -> Result<Vec<[u32; 2]>> {
+        let edges = self.edges;
         for (e, edge) in edges.iter().enumerate() {
             for (first, place) in [(&mut self.leaving, edge.from), (&mut self.reached, edge.to)] {
                 let first = &mut first[place as usize];
@@ -104,7 +90,7 @@ impl Linker {
                 *first = e as u32;
             }
         }
-        self.cancel(edges)?;
+        let joined = self.cancel()?;
         for (e, edge) in edges.iter().enumerate() {
             if !self.done[e] && !self.several[edge.to as usize] {
                 let next = self.leaving[edge.to as usize];
@@ -114,13 +100,16 @@ impl Linker {
                 }
             }
         }
-        self.follow_where_several_meet(nodes, edges)
+        self.follow_where_several_meet()?;
+        Ok(joined)
     }
 
     /// Marks pairs of an edge and its reverse as done. Where one edge only leaves and reaches both
-    /// ends, the pair is a ring of two places, which `trace` drops: the region surrounds it.
-    fn cancel(&mut self, edges: &[Edge]) -> Result<()> {
-        self.joined.clear();
+    /// ends, the pair is a ring of two places, which `trace` drops: the region surrounds it. Returns
+    /// their owners.
+    fn cancel(&mut self) -> Result<Vec<[u32; 2]>> {
+        let edges = self.edges;
+        let mut joined = Vec::new();
         let mut found: Vec<(u32, u32, bool, u32)> = Vec::new();
         for (e, edge) in edges.iter().enumerate() {
             let (low, high) = (edge.from.min(edge.to), edge.from.max(edge.to));
@@ -135,17 +124,15 @@ impl Linker {
             for (a, b) in back.iter().zip(forth) {
                 self.done[a.3 as usize] = true;
                 self.done[b.3 as usize] = true;
-                push(
-                    &mut self.joined,
-                    [a.3, b.3].map(|e| edges[e as usize].owner),
-                )?;
+                push(&mut joined, [a.3, b.3].map(|e| edges[e as usize].owner))?;
             }
         }
-        Ok(())
+        Ok(joined)
     }
 
     /// Pairs the edges at places where several meet.
-    fn follow_where_several_meet(&mut self, nodes: &Nodes, edges: &[Edge]) -> Result<()> {
+    fn follow_where_several_meet(&mut self) -> Result<()> {
+        let (at, edges) = (self.at, self.edges);
         // Place, the other end, whether the edge leaves, the edge.
         let mut rays: Vec<(u32, u32, bool, u32)> = Vec::new();
         for (e, edge) in edges.iter().enumerate() {
@@ -161,7 +148,7 @@ impl Linker {
         }
         rays.sort_unstable_by(|a, b| {
             a.0.cmp(&b.0)
-                .then_with(|| around(nodes, a.0, a.1, b.1))
+                .then_with(|| around(at, a.0, a.1, b.1))
                 .then_with(|| a.cmp(b))
         });
         let mut open = Vec::new();
@@ -190,15 +177,15 @@ impl Linker {
     /// Follows the edges from `e`, and cuts off a ring where a place is reached again.
     fn trace(
         &mut self,
-        edges: &[Edge],
         e: usize,
         path: &mut Vec<u32>,
         line: &mut impl FnMut(&[u32], u32) -> Result<()>,
     ) -> Result<()> {
+        let edges = self.edges;
         let owner = edges[e].owner;
         path.clear();
         let mut visit = |this: &mut Self, place: u32| -> Result<()> {
-            let before = this.at[place as usize];
+            let before = this.visited[place as usize];
             if before != NONE {
                 let ring = &path[before as usize..];
                 if ring.len() > 2 {
@@ -207,10 +194,10 @@ impl Linker {
                     line(&ring, owner)?;
                 }
                 for passed in path.drain(before as usize..) {
-                    this.at[passed as usize] = NONE;
+                    this.visited[passed as usize] = NONE;
                 }
             }
-            this.at[place as usize] = path.len() as u32;
+            this.visited[place as usize] = path.len() as u32;
             push(path, place)
         };
         visit(self, edges[e].from)?;
@@ -221,7 +208,7 @@ impl Linker {
             e = self.next[e as usize];
         }
         for &passed in path.iter() {
-            self.at[passed as usize] = NONE;
+            self.visited[passed as usize] = NONE;
         }
         if path.len() > 1 {
             line(path, owner)?;
@@ -231,8 +218,8 @@ impl Linker {
 }
 
 /// The order of two directions around a place, counterclockwise from that to the left.
-fn around(nodes: &Nodes, place: u32, a: u32, b: u32) -> Ordering {
-    let [o, p, q] = [place, a, b].map(|each| nodes.at(each));
+fn around(at: &[Point2], place: u32, a: u32, b: u32) -> Ordering {
+    let [o, p, q] = [place, a, b].map(|each| at[each as usize]);
     // Upper half: points that come after `o`, and so on.
     let half = |x| lexicographic(o, x) == Ordering::Less;
     half(p).cmp(&half(q)).then_with(|| match orient2d(o, p, q) {
@@ -243,18 +230,26 @@ fn around(nodes: &Nodes, place: u32, a: u32, b: u32) -> Ordering {
 }
 
 /// Whether a simple ring is counterclockwise: its first place is repeated at its end.
-pub fn is_counterclockwise(nodes: &Nodes, ring: &[u32]) -> bool {
+pub fn is_counterclockwise(at: &[Point2], ring: &[u32]) -> bool {
     let count = ring.len() - 1;
-    let least = first_of(nodes, ring);
-    let [a, b, c] = [least + count - 1, least, least + 1].map(|k| nodes.at(ring[k % count]));
+    let least = first_of(at, ring);
+    let [a, b, c] = [least + count - 1, least, least + 1].map(|k| at[ring[k % count] as usize]);
     // The first place in lexicographic order is strictly convex.
     orient2d(a, b, c) == Sign::Positive
 }
 
 /// The position in a ring of the first place in lexicographic order.
-pub fn first_of(nodes: &Nodes, ring: &[u32]) -> usize {
+fn first_of(at: &[Point2], ring: &[u32]) -> usize {
     let count = ring.len() - 1;
     (0..count)
-        .min_by(|&i, &j| lexicographic(nodes.at(ring[i]), nodes.at(ring[j])))
+        .min_by(|&i, &j| lexicographic(at[ring[i] as usize], at[ring[j] as usize]))
         .unwrap_or(0)
+}
+
+/// Lets a ring start at its first place in lexicographic order.
+pub fn rotate(at: &[Point2], ring: &mut [u32]) {
+    let first = first_of(at, ring);
+    let count = ring.len() - 1;
+    ring[..count].rotate_left(first);
+    ring[count] = ring[0];
 }

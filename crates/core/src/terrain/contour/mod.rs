@@ -9,10 +9,13 @@
 //! edge have the same *node*. A node at the height of the upper end of its edge is that vertex.
 //! `nodes` numbers and computes the nodes; `untangle` merges nodes until the pieces into which
 //! contours cut the triangles are positively oriented or collapsed, so that lines touch but never
-//! cross, and proves it; `link` joins directed edges into simple lines and rings; `lines` and
-//! `bands` have the results.
+//! cross, and proves it; `edges` collects the edges of each level or band; `link` joins them into simple
+//! lines and rings; `lines` and `bands` have the results.
+//!
+//! Threads share the triangles, and then the levels; the result does not depend on their number.
 
 mod bands;
+mod edges;
 mod lines;
 mod link;
 mod nodes;
