@@ -109,6 +109,7 @@ __all__ = [
     "halfspaces",
     "hull2",
     "hull3",
+    "hull_in_flat",
     "hull_n",
     "imprint_surface3",
     "improve3",
@@ -159,8 +160,10 @@ __all__ = [
     "transforms",
     "triangulate2",
     "triangulate3",
+    "triangulate_in_flat",
     "triangulate_n",
     "validate",
+    "validate_in_flat",
     "validate_periodic2",
     "validate_regular",
     "volumes2",
@@ -1988,6 +1991,9 @@ def hull2(points: NDArray[np.float64]) -> tuple[NDArray[np.int32], NDArray[np.in
 def hull3(points: NDArray[np.float64]) -> Hull3 | None:
     """The hull of 3-D points; None if they span no volume."""
 
+def hull_in_flat(points: NDArray[np.float64], rest: NDArray[np.float64]) -> HullN:
+    """The convex hull in a flat of points as those of `triangulate_in_flat`."""
+
 def hull_n(points: NDArray[np.float64]) -> HullN:
     """The convex hull of points with four to eight coordinates."""
 
@@ -2364,6 +2370,11 @@ def triangulate2(points: NDArray[np.float64], method: str, workers: int) -> Tria
 def triangulate3(points: NDArray[np.float64], workers: int) -> Triangulation:
     """The Delaunay triangulation of 3-D points."""
 
+def triangulate_in_flat(points: NDArray[np.float64], rest: NDArray[np.float64]) -> Triangulation:
+    """The same of points in a flat, given by their coordinates along its axes and, padded
+    with zeros to eight, the others.
+    """
+
 def triangulate_n(points: NDArray[np.float64]) -> Triangulation:
     """The Delaunay triangulation of points with four to eight coordinates."""
 
@@ -2371,6 +2382,16 @@ def validate(
     points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
 ) -> Faults:
     """Returns the faults of a triangulation with two to eight coordinates."""
+
+def validate_in_flat(
+    points: NDArray[np.float64],
+    rest: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+) -> Faults:
+    """The same of points in a flat, given by their coordinates along its axes and, padded
+    with zeros to eight, the others.
+    """
 
 def validate_periodic2(
     points: NDArray[np.float64],

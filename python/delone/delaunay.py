@@ -6,19 +6,20 @@ module contains construction and proof.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Never, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any, Never, Self, TypedDict, Unpack
 
 from delone import _core
-from delone._base.arrays import as_workers
+from delone._base.arrays import as_choice, as_workers
 from delone._base.counting import counted
 from delone._base.georeference import warn_of_degrees
 from delone._base.immutable import own_copy
 from delone._tiling.higher.dimension import MOST
+from delone._tiling.higher.flats import Flat, advised, flat_of
 from delone._tiling.higher.size import require_room
 from delone._tiling.space.plane import plane_of
 from delone._tiling.triangulation import PointTriangulation
 from delone.errors import DegenerateInputError, DtypeError, InputError, InternalError
-from delone.validation import judged
+from delone.validation import HigherReport, judged
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -43,6 +44,12 @@ _INSTEAD = {
     "segments": "use delone.ConstrainedDelaunay(points, segments)",
     "weights": "use delone.RegularTriangulation(points, weights)",
 }
+# From this many coordinates on, `flat` and `max_bytes` are available.
+_MANY = 4
+_FLAT_ELSEWHERE = (
+    'flat="project" is only available from 4-D on: leave it out, and for 3-D points in one plane '
+    "take `error.plane` of the DegenerateInputError"
+)
 # Fewer points are never shared among threads.
 _FEW = 1000
 
@@ -81,6 +88,10 @@ class Delaunay(PointTriangulation):
     max_bytes : int, optional
         From 4-D on: the maximum memory of the triangulation; by default the free memory. If samples
         predict more, `TooLargeError` is raised before the computation. See Notes.
+    flat : {"raise", "project"}, optional
+        From 4-D on, what to do with points that all lie in a flat of k < d dimensions: raise
+        DegenerateInputError (the default), or triangulate them in the flat. `simplices` then have
+        k + 1 corners, and are Delaunay by the distances in the flat. See Notes.
 
     Attributes
     ----------
@@ -144,6 +155,11 @@ class Delaunay(PointTriangulation):
     would take more than an eighth of the memory, samples of up to half of the points are
     triangulated first, in a few seconds, and their sizes extrapolated. The prediction may be off
     by a factor of two. `delone.estimate` predicts any triangulation more precisely.
+
+    In a flat (``flat="project"``), the first k coordinates that determine the others decide
+    orientation and location: `simplices` are positively oriented in these, and queries are
+    projected to the flat along the other axes. `volumes` and `circumcenters` are those in the flat,
+    up to rounding, and `transform` does not exist.
 
     Names, dtypes and meanings are those of ``scipy.spatial.Delaunay``. All arrays are read-only,
     attributes cannot be set, and ``copy.copy`` and ``copy.deepcopy`` return the object itself.
@@ -209,6 +225,7 @@ class Delaunay(PointTriangulation):
         workers: int | None = None,
         planar: bool = False,
         max_bytes: int | None = None,
+        flat: str = "raise",
         **unknown: Unpack[_Elsewhere],
     ) -> None:
         if unknown:
@@ -218,24 +235,31 @@ class Delaunay(PointTriangulation):
         # Few points are one task, and counting cores takes as long as some triangulations.
         threads = 1 if workers is None and len(own) < _FEW else as_workers(workers)
         _require_room(own, max_bytes)
+        stays = as_choice(flat, ("raise", "project"), name="flat") == "project"
+        if stays and own.shape[1] < _MANY:
+            raise InputError(_FLAT_ELSEWHERE)
         methods = _METHODS[own.shape[1] > 2]
         if not isinstance(method, str) or method not in methods:
             names = ", ".join(map(repr, methods))
             where = "" if own.shape[1] == 2 else f" in {own.shape[1]}-D"
             raise InputError(f"method must be one of {names}{where}, got {method!r:.80}")
         try:
-            made = _triangles(own, method, threads)
+            arrays, stages = _triangles(own, method, threads, stays=stays)
         except InternalError as error:
             error.points = own
             raise
-        arrays: dict[str, NDArray[Any]] = {
-            "points": own,
-            "simplices": made.simplices,
-            "neighbors": made.neighbors,
-            "duplicates": made.duplicates,
-        }
-        self._fill(arrays, made.stages, workers)
+        self._fill({"points": own} | arrays, stages, workers)
         self._refer(points)
+
+    def _saved(self) -> dict[str, NDArray[Any]]:
+        # In a flat, the triangulation is recomputed.
+        return {"points": self._points} if self._is_flat else super()._saved()
+
+    @classmethod
+    def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        if "simplices" in arrays:
+            return super()._loaded(arrays)
+        return cls(arrays["points"], flat="project", planar=True)
 
     @property
     def _sites(self) -> tuple[Any, Indices | None]:
@@ -261,6 +285,9 @@ class Delaunay(PointTriangulation):
         >>> print(Delaunay([(0, 0), (1, 0), (0, 1)]).validate())
         a canonical Delaunay triangulation
         """
+        if self._is_flat:
+            faults = Flat(self._points, self._simplices[0]).faults
+            return HigherReport._of(faults(self._simplices, self._neighbors))
         return judged(self._points, self._simplices, self._neighbors)
 
     def _described(self) -> str:
@@ -285,12 +312,36 @@ def _require_room(points: NDArray[np.float64], max_bytes: int | None) -> None:
         raise InputError("max_bytes is only available from 4-D on, where simplices are many")
 
 
-def _triangles(points: NDArray[np.float64], method: str, workers: int) -> _core.Triangulation:
-    """Return the triangulation, as the core returns it."""
-    if points.shape[1] == 2:
-        return _core.triangulate2(points, method, workers)
-    if points.shape[1] > 3:
-        return _core.triangulate_n(points)
+def _triangles(
+    points: NDArray[np.float64], method: str, workers: int, *, stays: bool
+) -> tuple[dict[str, NDArray[Any]], Any]:
+    """Return the arrays of the triangulation and the seconds of its stages.
+
+    If it `stays` in their flat, points may be in one.
+    """
+    try:
+        if points.shape[1] == 2:
+            made = _core.triangulate2(points, method, workers)
+        elif points.shape[1] > 3:
+            made = _core.triangulate_n(points)
+        else:
+            made = _in_space(points, workers)
+    except DegenerateInputError as error:
+        if points.shape[1] < _MANY:
+            raise
+        if not stays:
+            raise advised(error) from None
+        made = flat_of(points, error).triangulated()
+    arrays = {
+        "simplices": made.simplices,
+        "neighbors": made.neighbors,
+        "duplicates": made.duplicates,
+    }
+    return arrays, made.stages
+
+
+def _in_space(points: NDArray[np.float64], workers: int) -> _core.Triangulation:
+    """Return the triangulation of 3-D points, as the core returns it."""
     try:
         return _core.triangulate3(points, workers)
     except DegenerateInputError as error:

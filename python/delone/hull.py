@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from delone import _core, predicates
-from delone._base.arrays import as_queries, as_workers, require_finite
+from delone._base.arrays import as_choice, as_queries, as_workers, require_finite
 from delone._base.counting import counted
 from delone._base.extras import require
 from delone._base.immutable import kept, own_copy, sealed
@@ -18,6 +18,7 @@ from delone._tiling.complex import Complex
 from delone._tiling.dimension import only
 from delone._tiling.higher import hull as higher
 from delone._tiling.higher.dimension import MOST
+from delone._tiling.higher.flats import axes_of
 from delone._tiling.higher.hull import hull_arrays
 from delone._tiling.higher.size import require_room
 from delone._tiling.plane import geometry as plane
@@ -95,6 +96,11 @@ class ConvexHull(Complex):
         thread.
     max_bytes : int, optional
         From 4-D on: the maximum memory of the hull, as for `Delaunay`; by default the free memory.
+    flat : {"raise", "project"}, optional
+        From 4-D on, what to do with points that all lie in a flat of k < d dimensions: raise
+        DegenerateInputError (the default), or return their hull in the flat. `simplices` then have
+        k corners, `volume` and `area` are measured in the flat, and the normals of `equations` are
+        directions in it. `contains` projects points to the flat, as `Delaunay` does.
 
     Attributes
     ----------
@@ -184,7 +190,12 @@ class ConvexHull(Complex):
     _vertices: Indices
 
     def __init__(
-        self, points: ArrayLike, *, workers: int | None = None, max_bytes: int | None = None
+        self,
+        points: ArrayLike,
+        *,
+        workers: int | None = None,
+        max_bytes: int | None = None,
+        flat: str = "raise",
     ) -> None:
         own = own_copy(points, ndim=None, most=MOST)
         require_finite(own)
@@ -192,9 +203,15 @@ class ConvexHull(Complex):
             require_room(own, max_bytes, hull=True)
         elif max_bytes is not None:
             raise InputError("max_bytes is only available from 4-D on, where facets are many")
+        stays = as_choice(flat, ("raise", "project"), name="flat") == "project"
+        if stays and own.shape[1] in _ARRAYS_OF:
+            raise InputError('flat="project" is only available from 4-D on')
         if workers is not None:
             as_workers(workers)
-        arrays = _ARRAYS_OF.get(own.shape[1], hull_arrays)(own)
+        if own.shape[1] in _ARRAYS_OF:
+            arrays = _ARRAYS_OF[own.shape[1]](own)
+        else:
+            arrays = hull_arrays(own, stays=stays)
         if arrays is None:
             Delaunay(own)  # The error says what the points span instead.
             error = InternalError("the hull of points that span a simplex is flat")
@@ -247,7 +264,7 @@ class ConvexHull(Complex):
         """Return the exact signs of points relative to simplices, and the sign of the inside."""
         if self.ndim > 3:
             cones = np.column_stack((apex, self._simplices[row])).astype(np.int32)
-            return _core.orientations_n(self._points, cones, as_workers(self._workers)), 1
+            return higher.orientations(self._points, cones, self._flat_axes), 1
         corners = [self._points[self._simplices[row, j]] for j in range(self.ndim)]
         orient: Any = predicates.orient2d if self.ndim == 2 else predicates.orient3d
         return orient(*corners, self._points[apex]), 1 if self.ndim == 2 else -1
@@ -258,7 +275,8 @@ class ConvexHull(Complex):
         facet = np.repeat(np.arange(len(size)), size)
         if self.ndim > 3:
             listed = np.column_stack((facet, tail))
-            pairs = (np.repeat(self._facet_of, self.ndim), self._simplices.reshape(-1))
+            width = self._simplices.shape[1]
+            pairs = (np.repeat(self._facet_of, width), self._simplices.reshape(-1))
             own = np.unique(np.column_stack(pairs), axis=0)
         elif self.ndim == 2:
             own = np.column_stack((self._facet_of, self._simplices))
@@ -278,7 +296,8 @@ class ConvexHull(Complex):
 
     @classmethod
     def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
-        return cls(arrays["points"])
+        points = arrays["points"]
+        return cls(points, flat="raise" if points.shape[1] in _ARRAYS_OF else "project")
 
     @property
     def simplices(self) -> Indices:
@@ -312,7 +331,7 @@ class ConvexHull(Complex):
     def edges(self) -> Indices:
         """Every edge of `simplices` once, (k, 2): the smaller vertex first, rows ascending."""
         if self.ndim > 3:
-            pairs = combinations(range(self.ndim), 2)
+            pairs = combinations(range(self._simplices.shape[1]), 2)
             ends = [self._simplices[:, pair] for pair in pairs]
             return sealed(np.unique(np.sort(np.concatenate(ends), axis=1), axis=0))
         if self.ndim == 3:
@@ -368,8 +387,8 @@ class ConvexHull(Complex):
             return plane.total(measures.sizes(self._points, fan, self._workers))
         if self.ndim > 3:
             fan = np.column_stack((np.full(self.nsimplex, base, np.int32), self._simplices))
-            above = _core.orientations_n(self._points, fan, as_workers(self._workers)) > 0
-            return plane.total(measures.sizes(self._points, fan[above], self._workers))
+            above = higher.orientations(self._points, fan, self._flat_axes) > 0
+            return plane.total(higher.sizes(self._points, fan[above], self._workers))
         a, b, c = self._simplices.T
         cones = np.column_stack((a, c, b, np.full(self.nsimplex, base)))
         above = predicates.orient3d(*(self._points[cones[:, k]] for k in range(4))) > 0
@@ -424,7 +443,18 @@ class ConvexHull(Complex):
     @kept
     def _tiling(self) -> Delaunay:
         """The triangulation of the vertices."""
-        return Delaunay(self._points[self._vertices], workers=self._workers, planar=True)
+        flat = "raise" if self._flat_axes is None else "project"
+        corners = self._points[self._vertices]
+        return Delaunay(corners, workers=self._workers, planar=True, flat=flat)
+
+    @property
+    @kept
+    def _flat_axes(self) -> list[int] | None:
+        """The axes of the flat that contains the points; None if they span the whole space."""
+        if self._simplices.shape[1] == self.ndim:
+            return None
+        corners = np.append(self._simplices[0], self._inside[0])
+        return axes_of(self._points, corners)
 
     @only(2, "`facets` are the polygons of a hull in 3-D")
     def polygon(self) -> Any:

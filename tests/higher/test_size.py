@@ -30,6 +30,14 @@ def test_no_points_have_more_facets_than_cyclic_ones(d: int) -> None:
     assert len(lower) <= size._cyclic(15, 5)
 
 
+@pytest.mark.parametrize("d", [4, 5, 6, 7, 8])
+def test_few_points_are_too_few_and_not_too_large(d: int) -> None:
+    for made in (Delaunay, ConvexHull):
+        for n in (0, 1, d):
+            with pytest.raises(delone.DegenerateInputError, match="too few"):
+                made(np.eye(d)[:n])
+
+
 @pytest.mark.parametrize(("d", "n"), [(4, 1500), (5, 400), (6, 150), (8, 110)])
 @pytest.mark.parametrize("kind", ["uniform", "sphere"])
 @pytest.mark.deep("uniform-8-110", "sphere-8-110")

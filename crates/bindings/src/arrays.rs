@@ -99,6 +99,18 @@ macro_rules! in_many {
 }
 pub(crate) use in_many;
 
+/// The same for the dimension of a flat, 2 to 7.
+macro_rules! in_flats {
+    ($d:expr, $D:ident, $N:ident, $P:ident => $work:expr) => {
+        match $d {
+            2 => crate::arrays::in_many!(@ $D, $N, $P, 2, 4 => $work),
+            3 => crate::arrays::in_many!(@ $D, $N, $P, 3, 4 => $work),
+            many => crate::arrays::in_many!(many, $D, $N, $P => $work),
+        }
+    };
+}
+pub(crate) use in_flats;
+
 /// The error for points with a number of coordinates that is not from 4 to 8.
 pub fn not_many(columns: usize) -> Error {
     Error::Shape(format!("points have {columns} coordinates, not 4 to 8"))

@@ -2,6 +2,7 @@
 
 use delone_core::base::error::Error;
 use delone_core::base::proof::Findings;
+use delone_core::base::watch::Watch;
 use delone_core::delaunay::{plane, space};
 use delone_core::ndim;
 use delone_core::regular::{self, Wrapped};
@@ -9,10 +10,12 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{
-    Column, Table, column, columns, in_many, in_range, number_rows, numbers, rows, signed, wide,
+    Column, Table, column, columns, in_flats, in_many, in_range, number_rows, numbers, rows,
+    signed, wide,
 };
 use crate::errors::Outcome;
 use crate::given::{checked, finite_weights, unequal};
+use crate::ndim::rest_of;
 use crate::signals::watched;
 
 /// Faults of a triangulation with d coordinates; arrays are empty if there are none.
@@ -106,6 +109,24 @@ pub fn validate<'py>(
             faults(py, watched(py, |watch| ndim::validate::<D, N, P>(given, watch))?)
         }),
     }
+}
+
+/// The same of points in a flat, given by their coordinates along its axes and, padded with zeros to
+/// eight, the others.
+#[pyfunction]
+pub fn validate_in_flat(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    rest: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+) -> Outcome<Faults> {
+    in_flats!(columns(&points), D, N, P => {
+        let given = checked(&points, &simplices, &neighbors)?;
+        let rest = rest_of(&rest, given.points.len())?;
+        let check = |watch: &Watch| ndim::validate_in_flat::<D, N, P>(given, rest, watch);
+        faults(py, watched(py, check)?)
+    })
 }
 
 /// The same of a regular triangulation; also, for each row, the one that represents it.

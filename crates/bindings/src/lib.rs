@@ -73,7 +73,9 @@ mod _core {
     #[pymodule_export]
     use super::distributed::{DeepestPoints, deepest2, disks2, within2};
     #[pymodule_export]
-    use super::faults::{Faults, PeriodicFaults, validate, validate_periodic2, validate_regular};
+    use super::faults::{
+        Faults, PeriodicFaults, validate, validate_in_flat, validate_periodic2, validate_regular,
+    };
     #[pymodule_export]
     use super::graphs::{
         antipodes, graph_components, influence, knn, not_longer, of_triangles2, proximity,
@@ -105,7 +107,8 @@ mod _core {
     };
     #[pymodule_export]
     use super::ndim::{
-        Halfspaces, HullN, LazyN, LocatorN, halfspaces, hull_n, orientations_n, triangulate_n,
+        Halfspaces, HullN, LazyN, LocatorN, halfspaces, hull_in_flat, hull_n, orientations_n,
+        triangulate_in_flat, triangulate_n,
     };
     #[pymodule_export]
     use super::overlap::{CellGrid, CheckedCells, PlaneCells, SharedCells};

@@ -1,16 +1,16 @@
 //! Triangulations in four to eight dimensions as arrays, and point location in them.
 
 use delone_core::base::arrays::Arrays;
-use delone_core::base::error::Error;
+use delone_core::base::error::{Error, Result};
 use delone_core::locate::find;
 use delone_core::ndim::halfspaces::{Trouble, intersect};
-use delone_core::ndim::{self, Hyper, Lazy, Weighed};
+use delone_core::ndim::{self, Hull, Hyper, Lazy, Rest, Simplices, Weighed};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{
-    Column, Table, column, columns, flat, flattened, in_many, number_rows, numbers, rows, shaped,
-    table,
+    Column, Table, column, columns, flat, flattened, in_flats, in_many, number_rows, numbers, rows,
+    shaped, table,
 };
 use crate::errors::Outcome;
 use crate::given::simplices_of;
@@ -25,12 +25,45 @@ pub fn triangulate_n(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> Outco
     in_many!(columns(&points), D, N, P => {
         let points: &[[f64; D]] = rows(&points, "points")?;
         let made = watched(py, |watch| ndim::triangulate::<D, N, P>(points, watch))?;
-        let arrays = Arrays {
-            simplices: made.simplices.into_iter().map(|v| v.map(|i| i as i32)).collect(),
-            neighbors: made.neighbors,
-        };
-        arrays_of(py, arrays, &made.duplicates, &[])
+        triangulation(py, made)
     })
+}
+
+/// The same of points in a flat, given by their coordinates along its axes and, padded with zeros to
+/// eight, the others.
+#[pyfunction]
+pub fn triangulate_in_flat(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    rest: PyReadonlyArray2<'_, f64>,
+) -> Outcome<Triangulation> {
+    in_flats!(columns(&points), D, N, P => {
+        let points: &[[f64; D]] = rows(&points, "points")?;
+        let rest = rest_of(&rest, points.len())?;
+        let made = watched(py, |watch| {
+            ndim::triangulate_in_flat::<D, N, P>(points, rest, watch)
+        })?;
+        triangulation(py, made)
+    })
+}
+
+fn triangulation<const V: usize>(py: Python<'_>, made: Simplices<V>) -> Outcome<Triangulation> {
+    let signed = |v: [u32; V]| v.map(|i| i as i32);
+    let arrays = Arrays {
+        simplices: made.simplices.into_iter().map(signed).collect(),
+        neighbors: made.neighbors,
+    };
+    arrays_of(py, arrays, &made.duplicates, &[])
+}
+
+/// The coordinates of points that the axes of a flat leave out.
+pub fn rest_of<'a>(rest: &'a PyReadonlyArray2<'_, f64>, points: usize) -> Result<&'a [Rest]> {
+    let found: &[Rest] = rows(rest, "rest")?;
+    if found.len() == points {
+        return Ok(found);
+    }
+    let message = format!("rest has {} rows, not {points}", found.len());
+    Err(Error::Shape(message))
 }
 
 /// The convex hull of points with four to eight coordinates.
@@ -54,13 +87,32 @@ pub fn hull_n(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> Outcome<Hull
     in_many!(columns(&points), D, N, P => {
         let points: &[[f64; D]] = rows(&points, "points")?;
         let found = watched(py, |watch| ndim::hull::<D, N, P>(points, watch))?;
-        Ok(HullN {
-            simplices: number_rows(py, &found.simplices)?,
-            neighbors: number_rows(py, &found.neighbors)?,
-            facet_of: numbers(py, found.plane),
-            inside: numbers(py, found.inside),
-            duplicates: number_rows(py, &found.duplicates)?,
-        })
+        facets(py, found)
+    })
+}
+
+/// The convex hull in a flat of points as those of `triangulate_in_flat`.
+#[pyfunction]
+pub fn hull_in_flat(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    rest: PyReadonlyArray2<'_, f64>,
+) -> Outcome<HullN> {
+    in_flats!(columns(&points), D, N, P => {
+        let points: &[[f64; D]] = rows(&points, "points")?;
+        let rest = rest_of(&rest, points.len())?;
+        let found = watched(py, |watch| ndim::hull_in_flat::<D, N, P>(points, rest, watch))?;
+        facets(py, found)
+    })
+}
+
+fn facets<const D: usize>(py: Python<'_>, found: Hull<D>) -> Outcome<HullN> {
+    Ok(HullN {
+        simplices: number_rows(py, &found.simplices)?,
+        neighbors: number_rows(py, &found.neighbors)?,
+        facet_of: numbers(py, found.plane),
+        inside: numbers(py, found.inside),
+        duplicates: number_rows(py, &found.duplicates)?,
     })
 }
 

@@ -134,6 +134,8 @@ def locate(
     simplex, barycentric, beside, facet, weights = dimension.located(
         index, flat, as_workers(workers)
     )
+    # In a flat, simplices have fewer corners.
+    corners = barycentric.shape[1]
     close = np.empty_like(flat)
     for block in blocks(len(flat)):
         close[block] = np.where((simplex[block] >= 0)[:, None], flat[block], np.nan)
@@ -141,7 +143,7 @@ def locate(
     close[rows] = dimension.on_facets(points, facet[rows], weights[rows])
     return Location(
         simplex.reshape(leading),
-        barycentric.reshape((*leading, d + 1)),
+        barycentric.reshape((*leading, corners)),
         close.reshape((*leading, d)),
         beside.reshape(leading),
         facet.reshape((*leading, d)),

@@ -17,11 +17,14 @@ from delone._base.immutable import kept, sealed
 from delone._tiling import location, measures
 from delone._tiling.complex import Complex
 from delone._tiling.dimension import FLAT_OR_SOLID, only
+from delone._tiling.higher import flats
 from delone._tiling.higher.dimension import HIGHER
+from delone._tiling.higher.flat_dimension import FLATS
 from delone._tiling.plane.dimension import PLANE
 from delone._tiling.plane.location import along
 from delone._tiling.plane.topology import vertex_neighbor_vertices, vertex_to_simplex
 from delone._tiling.space.dimension import SPACE
+from delone.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -29,7 +32,7 @@ if TYPE_CHECKING:
     from delone._base.types import Floats, Indices
     from delone._tiling.dimension import Dimension
 
-__all__ = ["HullTiling", "PointTriangulation", "Triangulation"]
+__all__ = ["HullTiling", "PointTriangulation", "Triangulation", "require_whole"]
 
 # By the number of coordinates.
 _DIMENSIONS = {2: PLANE, 3: SPACE} | HIGHER
@@ -43,7 +46,13 @@ class Triangulation(Complex):
     @property
     def _dimension(self) -> Dimension:
         """The functions of this dimension."""
-        return _DIMENSIONS[self._points.shape[1]]
+        d, k = self._points.shape[1], self._simplices.shape[1] - 1
+        return _DIMENSIONS[d] if k == d else FLATS[d, k]
+
+    @property
+    def _is_flat(self) -> bool:
+        """Whether all points are in a flat, and the simplices have fewer corners than usual."""
+        return bool(self._simplices.shape[1] <= self._points.shape[1])
 
     def _tiling(self) -> tuple[Indices, Indices]:
         """Return simplices and neighbors of a tiling of the convex hull that holds these."""
@@ -137,6 +146,12 @@ class Triangulation(Complex):
         In 2-D, entries have a relative error below 1e-13; in more dimensions, rows have an error
         below 1e-13 of their length. Values beyond the range of doubles are infinite.
         """
+        if self._is_flat:
+            raise AttributeError(
+                "transform is not available for points in a flat: `locate` returns weights",
+                name="transform",
+                obj=self,
+            )
         return sealed(measures.transform(self._points, self._simplices, self._workers))
 
     @property
@@ -145,12 +160,16 @@ class Triangulation(Complex):
         """Centers of the circles or spheres through the corners of simplices, (m, d).
 
         Each coordinate is within 4 units in the last place. Centers of thin simplices are far away,
-        and infinite beyond the range of doubles.
+        and infinite beyond the range of doubles. In a flat they are in it, up to rounding.
         """
+        if self._is_flat:
+            return sealed(flats.circumcenters(self._points, self._simplices))
         return sealed(measures.circumcenters(self._points, self._simplices, self._workers))
 
     @kept
     def _sizes(self) -> Floats:
+        if self._is_flat:
+            return sealed(flats.sizes(self._points, self._simplices))
         return sealed(measures.sizes(self._points, self._simplices, self._workers))
 
     @property
@@ -546,6 +565,15 @@ class Triangulation(Complex):
         from delone.exchange.dolfinx import to_dolfinx_arrays
 
         return to_dolfinx_arrays(self._parts(), order=order)
+
+
+def require_whole(mesh: Triangulation | None, what: str) -> None:
+    """Raise if the points of a triangulation are in a flat."""
+    if mesh is not None and mesh._is_flat:
+        raise InputError(
+            f"the points of the triangulation are in a flat, where {what} is not available: pass "
+            "the columns of its points that determine the others, for distances between these"
+        )
 
 
 class HullTiling(Triangulation):

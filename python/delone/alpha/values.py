@@ -14,6 +14,7 @@ from delone._base.arrays import as_count
 from delone._base.duplicates import first_rows
 from delone._base.immutable import sealed
 from delone._tiling.dimension import FLAT_OR_SOLID
+from delone._tiling.triangulation import require_whole
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, InputError
 from delone.periodic import PeriodicDelaunay, as_periods
@@ -247,4 +248,7 @@ def simplices_of(valued: Valued, k: int, ndim: int) -> tuple[Indices, Floats]:
 
 def known_mesh(points: Any) -> Any:
     """Return a triangulation whose simplices are those of its points' complex, or None."""
-    return points if isinstance(points, Delaunay | RegularTriangulation) else None
+    if not isinstance(points, Delaunay | RegularTriangulation):
+        return None
+    require_whole(points, "an alpha complex")
+    return points

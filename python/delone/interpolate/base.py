@@ -24,7 +24,7 @@ from delone._base.renames import renamed
 from delone._tiling import location, measures
 from delone._tiling.higher.dimension import MOST
 from delone._tiling.plane import slivers, topology
-from delone._tiling.triangulation import Triangulation
+from delone._tiling.triangulation import Triangulation, require_whole
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
 from delone.interpolate.hull import summed
@@ -129,6 +129,7 @@ class Interpolator:
         self._parts: Parts | None = None
         as_workers(workers)
         given = points if isinstance(points, Triangulation) else None
+        require_whole(given, "interpolation")
         self._periodic = points if isinstance(points, PeriodicDelaunay) else None
         self._repeated: Repeated | None = None
         known = given if self._periodic is None else self._periodic

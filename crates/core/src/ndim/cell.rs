@@ -293,10 +293,15 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
         if self.sites.filtered {
             let a = self.differences(&self.cells[c as usize].vertices);
             let v = &self.cells[c as usize].vertices;
-            let weights = (!self.sites.weights.is_empty())
-                .then(|| std::array::from_fn(|i| self.sites.weight(v[i + 1], v[0])));
+            let weights = self.sites.is_lifted.then(|| self.lifts(v));
             self.cells[c as usize].test = Test::lifted(&a, weights);
         }
+    }
+
+    /// The weights of corners less that of the first one, rounded.
+    #[inline(always)]
+    pub fn lifts(&self, v: &[u32; V]) -> [f64; D] {
+        std::array::from_fn(|i| self.sites.weight(v[i + 1], v[0]))
     }
 
     /// Prepares the test of a ghost, whose neighbor behind the facet is known.
@@ -360,12 +365,19 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
         let cell = &self.cells[c as usize];
         let at = |p: u32| &self.sites.scaled[p as usize];
         let d = minus(at(p), at(cell.vertices[0]));
-        let (value, bound) = cell.test.value(&d, cell.is_ghost());
-        if self.sites.weights.is_empty() || cell.is_ghost() {
-            return (value, bound);
+        let rounded = cell.test.value(&d, cell.is_ghost());
+        if !self.sites.is_lifted || cell.is_ghost() {
+            return rounded;
         }
-        let weight = self.sites.weight(p, cell.vertices[0]);
-        let rounding = 4.0 * U * (value.abs() + weight.abs());
+        self.less_weight(rounded, p, cell.vertices[0])
+    }
+
+    /// A value with its bound, less the weight of a point from the first corner. In a flat, that errs
+    /// by 6 u of itself.
+    #[inline(always)]
+    pub fn less_weight(&self, (value, bound): (f64, f64), p: u32, o: u32) -> (f64, f64) {
+        let weight = self.sites.weight(p, o);
+        let rounding = 12.0 * U * (value.abs() + weight.abs());
         (value - weight, bound + rounding)
     }
 

@@ -89,14 +89,16 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
         }
         self.counts.ties += 1;
         if is_delaunay {
+            let v = self.cells[c as usize].vertices;
             let test = if self.sites.filtered {
-                Test::sphere(&self.differences(&self.cells[c as usize].vertices))
+                let weights = self.sites.is_lifted.then(|| self.lifts(&v));
+                Test::lifted(&self.differences(&v), weights)
             } else {
                 Test::UNKNOWN
             };
-            let o = self.cells[c as usize].vertices[0];
             let at = |u: u32| &self.sites.scaled[u as usize];
-            let rounded = test.value(&minus(at(p), at(o)), false);
+            let rounded = test.value(&minus(at(p), at(v[0])), false);
+            let rounded = self.less_weight(rounded, p, v[0]);
             match self.power_after(c, p, rounded)? {
                 0 => {}
                 power => return Ok(power < 0),

@@ -17,14 +17,16 @@
 //! (D + 2) u sum |a_ik x^_k| for the products, their sum and A^, (D + 3) u |b_i| for b_i = |a_i|^2 from
 //! rounded differences, and 2 u of the difference: at most (2 D + 8) u (sum |a_ik x^_k| + |b_i|). With
 //! weights, b_i has the rounded difference of two of them as another term, which passes through two
-//! sums, and the sum of both magnitudes is in place of |b_i|.
+//! sums, and the sum of both magnitudes is in place of |b_i|. In a flat, this term errs by 6 u before: with
+//! these sums and the difference 10 u, which is below 2 D + 8.
 //!
 //! **The value.** A point p with d = p - v_0 has the power P = |d|^2 - x . d. In rounded numbers |d|^2
 //! errs by (D + 2) u |d|^2, x^ . d by (D + 1) u |x^| |d|, the difference by u of both, and x^ in place of x
 //! adds |d| |x - x^|. With c = (D + 5) u, |P^ - P| <= |d| (|x - x^| + c |x^|) + c |d|^2. For any r > 0,
 //! |d| <= (|d|^2 / r + r) / 2, so the bound is q0 + q1 |d|^2. It needs no root, and D + 5 in place of
 //! D + 3 pays for its own roundings. With weights, the rounded difference of two is subtracted last:
-//! that errs by u of it, and by u of the result, at most u times the sum of both magnitudes.
+//! that errs by u of it, and by u of the result, at most u times the sum of both magnitudes. In a flat,
+//! it errs by 6 u.
 //!
 //! **Underflow.** Coordinates are as `sites` describes: differences are zero or at least 2^-400. A
 //! product may underflow and err by 2^-1075 only if another factor is tiny. The floors below are larger
@@ -259,13 +261,8 @@ impl<const D: usize> Test<D> {
         }
     }
 
-    /// The test of a simplex with the differences `a`.
-    #[inline(always)]
-    pub fn sphere<const P: usize>(a: &Matrix<D, P>) -> Self {
-        Self::lifted(a, None)
-    }
-
-    /// The same with the weights of the corners less that of the first one.
+    /// The test of a simplex with the differences `a`, and the weights of the corners less that of the
+    /// first one.
     #[inline(always)]
     pub fn lifted<const P: usize>(a: &Matrix<D, P>, weights: Option<[f64; D]>) -> Self {
         let (mut b, mut sizes) = ([0.0; P], [0.0; P]);

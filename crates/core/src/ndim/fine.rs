@@ -5,8 +5,11 @@
 //! pass through p products and s sums errs by at most (9 p + 4 s) u^2 times the sum of their magnitudes.
 //! Differences of coordinates are exact. A component of the residual, the sum of D squares less D
 //! products, passes through one product and 2 D sums: (8 D + 9) u^2; the power, a sum of D products
-//! d (d - x), through one product and D + 1 sums: (4 D + 13) u^2 |d| (|d| + |x|). The constants are larger
-//! by 7 and 3, which holds the terms of higher order and the roundings of the sums of magnitudes.
+//! d (d - x), through one product and D + 1 sums: (4 D + 13) u^2 |d| (|d| + |x|). In a
+//! flat, weights are sums of up to six squares: they pass through one product and D + 7 sums in the
+//! residual, (4 D + 37) u^2, and through one product and 7 sums in the power, 37 u^2. The constants are
+//! larger than these by 7 and more, which holds the terms of higher order and the roundings of the sums
+//! of magnitudes.
 
 use delone_predicates::arithmetic::Pair;
 
@@ -101,7 +104,7 @@ impl<const D: usize> Fine<D> {
                 sum = sum - product;
             }
             residual[i] = sum.hi;
-            let rounding = (8 * D + 16) as f64 * U * U * size;
+            let rounding = (8 * D + 48) as f64 * U * U * size;
             let bound = ROUNDED * sum.hi.abs() + rounding + LEAST_RESIDUAL;
             squares += bound * bound;
         }
@@ -119,7 +122,7 @@ impl<const D: usize> Fine<D> {
         }
         sum = sum - weight;
         let length = ROUNDED * square.sqrt();
-        let unit = (4 * D + 16) as f64 * U * U;
+        let unit = (4 * D + 48) as f64 * U * U;
         let rounding = unit * (length + self.size);
         // What is left out of the pair is below u of its head.
         let bound = ROUNDED * (length * (self.error + rounding) + unit * weight.hi.abs())

@@ -5,7 +5,8 @@
 //! By the fraction-free elimination of E. H. Bareiss (1968), whose entries are minors of the matrix
 //! [A | b | I]; b holds squares of lengths, less differences of weights. With D rows and differences
 //! below 2^bits, Hadamard's inequality for columns bounds minors by D^(D / 2) 2^(D bits), and with b in
-//! place of a column by (D + 1) D^(D / 2) 2^((D + 1) bits): below 2^[`minor_bits`].
+//! place of a column by (D + 1) D^(D / 2) 2^((D + 1) bits): below 2^[`minor_bits`]. In a flat, `bits` is larger
+//! by two, so that the squares of up to six more coordinates are below 2^(2 bits) together.
 
 use std::ops::{Div, Mul, Sub};
 

@@ -43,8 +43,18 @@ pub fn hull<const D: usize, const V: usize, const P: usize>(
     points: &[[f64; D]],
     watch: &Watch,
 ) -> Result<Hull<D>> {
-    let mut pace = Pace::new(watch, PACE);
     let (sites, rows, duplicates) = sorted::<D, P>(points)?;
+    hull_of::<D, V, P>(sites, rows, duplicates, watch)
+}
+
+/// The hull of sites, which have the given rows.
+pub fn hull_of<const D: usize, const V: usize, const P: usize>(
+    sites: Sites<D, P>,
+    rows: Vec<u32>,
+    duplicates: Vec<[u32; 2]>,
+    watch: &Watch,
+) -> Result<Hull<D>> {
+    let mut pace = Pace::new(watch, PACE);
     let order = arranged::<D, P>(&sites.scaled)?;
     let mut mesh = faceted::<D, V, P>(sites, &rows, &order, false, &mut pace)?;
     let mut numbers = rows;
@@ -55,12 +65,12 @@ pub fn hull<const D: usize, const V: usize, const P: usize>(
                 extreme[v as usize] = true;
             }
         }
-        let (mut given, mut kept) = (Vec::new(), Vec::new());
+        let (mut corners, mut kept) = (Vec::new(), Vec::new());
         for (v, _) in (0u32..).zip(&extreme).filter(|(_, is)| **is) {
-            push(&mut given, mesh.sites.corners(&[v])[0])?;
+            push(&mut corners, v)?;
             push(&mut kept, numbers[v as usize])?;
         }
-        let sites = Sites::new(given)?;
+        let sites = mesh.sites.only(&corners)?;
         let order = arranged::<D, P>(&sites.scaled)?;
         mesh = faceted(sites, &kept, &order, true, &mut pace)?;
         numbers = kept;

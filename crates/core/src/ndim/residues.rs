@@ -87,7 +87,7 @@ pub type Coordinate = (i64, u32);
 
 /// A matrix of points in rows as integers from any origin; the first is subtracted from the others.
 pub struct Points {
-    /// The coordinates of each.
+    /// The coordinates of each, and in a flat those that its axes leave out.
     pub rows: [[Coordinate; ROWS - 1]; ROWS + 1],
     /// Their weights, in squared units.
     pub weights: [Coordinate; ROWS + 1],
@@ -95,6 +95,8 @@ pub struct Points {
     pub count: usize,
     /// The number of coordinates.
     pub dimension: usize,
+    /// The number of those that count for lengths.
+    pub squares: usize,
 }
 
 /// Whether the determinant of the points from the first is zero, if its magnitude is below 2^bits;
@@ -121,13 +123,15 @@ fn vanishes(points: &Points, lifted: bool, f: Prime) -> bool {
         }
     };
     let at = |row: usize, k: usize| value(points.rows[row][k]);
-    let origin: [u64; ROWS - 1] = std::array::from_fn(|k| if k < d { at(0, k) } else { 0 });
+    let every = if lifted { points.squares } else { d };
+    let origin: [u64; ROWS - 1] = std::array::from_fn(|k| if k < every { at(0, k) } else { 0 });
     let mut m = [[0u64; ROWS]; ROWS];
     for i in 0..n {
         let mut square = 0;
-        for k in 0..d {
+        for k in 0..every {
             let x = f.sub(at(i + 1, k), origin[k]);
-            m[i][k] = x;
+            // What comes after the coordinates counts for lengths only.
+            m[i][k] = if k < d { x } else { 0 };
             square = f.add(square, f.mul(x, x));
         }
         if lifted {
@@ -231,6 +235,7 @@ mod tests {
             weights: [(0, 0); ROWS + 1],
             count: 3,
             dimension: 2,
+            squares: 2,
         };
         points.rows[1][0] = (p, 0);
         points.rows[2][1] = (q, 0);

@@ -22,6 +22,16 @@ pub const WIDEST: u32 = 400;
 /// Differences of fewer bits are kept as machine integers. Two of them are added without overflow.
 pub const SMALL: u32 = 61;
 
+/// The coordinates of points in a flat that its axes leave out, padded with zeros.
+pub type Rest = [f64; MOST];
+
+/// The most coordinates of points.
+pub const MOST: usize = ROWS - 1;
+
+/// Bits that are added in a flat: the squares of at most six left out coordinates are below 2^(2 bits)
+/// together, with two bits to spare.
+const REST_BITS: u32 = 2;
+
 /// Distinct points in lexicographic order.
 pub struct Sites<const D: usize, const P: usize> {
     /// The coordinates times 2^-high, and zeros.
@@ -34,6 +44,15 @@ pub struct Sites<const D: usize, const P: usize> {
     pub unit: i64,
     /// The weights times 2^(-2 high); none if all are zero.
     pub weights: Vec<f64>,
+    /// Whether heights are not the squares of the coordinates alone: there are weights, or the
+    /// points are in a flat, where the coordinates that its axes leave out count as well.
+    pub is_lifted: bool,
+    /// In a flat, the coordinates that its axes leave out.
+    rest: Vec<Rest>,
+    /// The same times 2^-high.
+    scaled_rest: Vec<Rest>,
+    /// The same in units, if they have few bits.
+    small_rest: Vec<[i64; MOST]>,
     /// The coordinates as they were given.
     given: Vec<[f64; D]>,
     /// The weights as they were given.
@@ -47,18 +66,33 @@ pub struct Sites<const D: usize, const P: usize> {
 impl<const D: usize, const P: usize> Sites<D, P> {
     /// From finite points, distinct and in lexicographic order.
     pub fn new(given: Vec<[f64; D]>) -> Result<Self> {
-        Self::weighted(given, Vec::new())
+        Self::made(given, Vec::new(), Vec::new())
     }
 
     /// The same with finite weights, one for each point or none.
     pub fn weighted(given: Vec<[f64; D]>, given_weights: Vec<f64>) -> Result<Self> {
+        Self::made(given, given_weights, Vec::new())
+    }
+
+    /// Points in a flat: the coordinates along its axes, and those that these determine.
+    pub fn in_flat(given: Vec<[f64; D]>, rest: Vec<Rest>) -> Result<Self> {
+        Self::made(given, Vec::new(), rest)
+    }
+
+    fn made(given: Vec<[f64; D]>, given_weights: Vec<f64>, rest: Vec<Rest>) -> Result<Self> {
         let (mut low, mut high) = (i32::MAX, i32::MIN);
-        for p in &given {
+        let mut widen = |span: Option<(i32, u32)>| {
             // A width of zero: all coordinates are zero.
-            if let Some((least, width @ 1..)) = bit_span(&[*p]) {
+            if let Some((least, width @ 1..)) = span {
                 low = low.min(least);
                 high = high.max(least + width as i32);
             }
+        };
+        for p in &given {
+            widen(bit_span(&[*p]));
+        }
+        for p in &rest {
+            widen(bit_span(&[*p]));
         }
         for &w in &given_weights {
             // Weights are multiples of 2^(2 low), and smaller than 2^(2 high).
@@ -85,11 +119,17 @@ impl<const D: usize, const P: usize> Sites<D, P> {
                 .iter()
                 .map(|w| w * first * second * first * second),
         );
+        let mut scaled_rest = with_room(rest.len())?;
+        scaled_rest.extend(rest.iter().map(|p| p.map(|x| x * first * second)));
         let mut sites = Self {
             scaled,
+            is_lifted: !weights.is_empty() || !rest.is_empty(),
             weights,
+            scaled_rest,
+            small_rest: Vec::new(),
             filtered: span <= WIDEST,
-            bits: span + 1,
+            bits: span + 1 + if rest.is_empty() { 0 } else { REST_BITS },
+            rest,
             unit: -i64::from(span),
             given,
             given_weights,
@@ -105,6 +145,11 @@ impl<const D: usize, const P: usize> Sites<D, P> {
                 integers
             }));
             sites.small = Some(small);
+            let integers = |p: &Rest| p.map(|x| (x * units) as i64);
+            sites.small_rest = with_room(sites.rest.len())?;
+            sites
+                .small_rest
+                .extend(sites.scaled_rest.iter().map(integers));
         }
         Ok(sites)
     }
@@ -119,6 +164,14 @@ impl<const D: usize, const P: usize> Sites<D, P> {
         (self.given[p as usize][k], self.low)
     }
 
+    /// Some of the points, in their order.
+    pub fn only(&self, kept: &[u32]) -> Result<Self> {
+        let (mut given, mut rest) = (with_room(kept.len())?, with_room(kept.len())?);
+        given.extend(kept.iter().map(|&p| self.given[p as usize]));
+        rest.extend(kept.iter().filter_map(|&p| self.rest_of(p)));
+        Self::in_flat(given, rest)
+    }
+
     /// The coordinates of points, as they were given.
     pub fn corners<const V: usize>(&self, v: &[u32; V]) -> [[f64; D]; V] {
         v.map(|p| self.given[p as usize])
@@ -131,21 +184,42 @@ impl<const D: usize, const P: usize> Sites<D, P> {
         std::array::from_fn(|i| minus(&self.scaled[v[i + 1] as usize], o))
     }
 
+    /// The left out coordinates of a point as they were given, if it is in a flat.
+    fn rest_of(&self, p: u32) -> Option<&Rest> {
+        self.rest.get(p as usize)
+    }
+
     /// The scaled weight of `p` less that of `o`, rounded.
+    ///
+    /// Lifted heights may be measured from any point of a flat: that changes them by an affine
+    /// function. From `o`, the height of `p` is the square of their distance, of which the left out
+    /// coordinates are a negative weight of `p`. It passes through a product and, in four parts,
+    /// three sums, so with the differences it errs by at most 6 u of itself.
     #[inline(always)]
     pub fn weight(&self, p: u32, o: u32) -> f64 {
-        if self.weights.is_empty() {
+        if !self.is_lifted {
             return 0.0;
+        }
+        if self.weights.is_empty() {
+            let d = minus(&self.scaled_rest[p as usize], &self.scaled_rest[o as usize]);
+            return -dot(&d, &d);
         }
         self.weights[p as usize] - self.weights[o as usize]
     }
 
-    /// The same exactly.
+    /// The same in a pair of doubles: exactly with weights, and in a flat by the rule of `fine`, one
+    /// product and at most six sums.
     pub fn weight_pair(&self, p: u32, o: u32) -> Pair {
-        if self.weights.is_empty() {
-            return Pair::from_double(0.0);
+        let mut sum = Pair::from_double(0.0);
+        if !self.weights.is_empty() {
+            sum = Pair::difference(self.weights[p as usize], self.weights[o as usize]);
+        } else if self.is_lifted {
+            let (p, o) = (&self.scaled_rest[p as usize], &self.scaled_rest[o as usize]);
+            for k in 0..MOST - D {
+                sum = sum - Pair::difference(p[k], o[k]).square();
+            }
         }
-        Pair::difference(self.weights[p as usize], self.weights[o as usize])
+        sum
     }
 
     /// Points as integers for residues.
@@ -165,6 +239,11 @@ impl<const D: usize, const P: usize> Sites<D, P> {
                 let (x, low) = self.coordinate(p, k);
                 rows[count][k] = integer(x, low);
             }
+            if let Some(rest) = self.rest_of(p) {
+                for k in D..MOST {
+                    rows[count][k] = integer(rest[k - D], self.low);
+                }
+            }
             if let Some(&w) = self.given_weights.get(p as usize) {
                 weights[count] = integer(w, 2 * self.low);
             }
@@ -175,6 +254,7 @@ impl<const D: usize, const P: usize> Sites<D, P> {
             weights,
             count,
             dimension: D,
+            squares: if self.rest.is_empty() { D } else { MOST },
         }
     }
 
@@ -188,7 +268,15 @@ impl<const D: usize, const P: usize> Sites<D, P> {
 impl<const D: usize, const P: usize> Integers for Sites<D, P> {
     fn small_weight(&self, p: u32, o: u32) -> i128 {
         if self.weights.is_empty() {
-            return 0;
+            let Some((p, o)) = self
+                .small_rest
+                .get(p as usize)
+                .zip(self.small_rest.get(o as usize))
+            else {
+                return 0;
+            };
+            let square = |k: usize| i128::from(p[k] - o[k]).pow(2);
+            return -(0..MOST - D).map(square).sum::<i128>();
         }
         // Below 2^120 squared units: a double times a power of two is an integer, exactly.
         let units = factor(-(self.unit as i32));
@@ -197,6 +285,11 @@ impl<const D: usize, const P: usize> Integers for Sites<D, P> {
     }
 
     fn wide_weight(&self, p: u32, o: u32) -> BigInt {
+        if let Some((p, o)) = self.rest_of(p).zip(self.rest_of(o)) {
+            let at = |x: f64| wide::scaled(x, self.low);
+            let square = |k: usize| (at(p[k]) - at(o[k])).pow(2);
+            return -(0..MOST - D).map(square).sum::<BigInt>();
+        }
         let of = |p: u32| {
             let w = self.given_weights.get(p as usize);
             w.map_or(BigInt::ZERO, |&w| wide::scaled(w, 2 * self.low))

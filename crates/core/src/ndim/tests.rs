@@ -2,6 +2,7 @@
 
 mod bounds;
 mod brute;
+mod flats;
 mod hulls;
 mod lazily;
 mod regular;

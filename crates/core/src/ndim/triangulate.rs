@@ -54,7 +54,7 @@ pub fn regular<const D: usize, const V: usize, const P: usize>(
 }
 
 /// The triangulation of sites, which have the given rows.
-fn made<const D: usize, const V: usize, const P: usize>(
+pub fn made<const D: usize, const V: usize, const P: usize>(
     sites: Sites<D, P>,
     rows: &[u32],
     duplicates: Vec<[u32; 2]>,
@@ -94,7 +94,7 @@ pub fn weighted<const D: usize, const P: usize>(
 }
 
 /// Distinct points, the first row of each, and the pairs of rows that are equal.
-type Sorted<const D: usize, const P: usize> = (Sites<D, P>, Vec<u32>, Vec<[u32; 2]>);
+pub type Sorted<const D: usize, const P: usize> = (Sites<D, P>, Vec<u32>, Vec<[u32; 2]>);
 
 /// Finite points in lexicographic order, so that their numbers compare as they do.
 pub fn sorted<const D: usize, const P: usize>(points: &[[f64; D]]) -> Result<Sorted<D, P>> {
@@ -103,9 +103,9 @@ pub fn sorted<const D: usize, const P: usize>(points: &[[f64; D]]) -> Result<Sor
 }
 
 /// The coordinates, first rows, and pairs of equal rows.
-type Distinct<const D: usize> = (Vec<[f64; D]>, Vec<u32>, Vec<[u32; 2]>);
+pub type Distinct<const D: usize> = (Vec<[f64; D]>, Vec<u32>, Vec<[u32; 2]>);
 
-fn distinct<const D: usize>(points: &[[f64; D]]) -> Result<Distinct<D>> {
+pub fn distinct<const D: usize>(points: &[[f64; D]]) -> Result<Distinct<D>> {
     points::scan(points)?;
     let mut all = with_room(points.len())?;
     all.extend((0u32..).zip(points).map(|(row, _)| row));

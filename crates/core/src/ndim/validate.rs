@@ -10,10 +10,11 @@
 use num_bigint::BigInt;
 
 use super::cell::Mesh;
+use super::flat::sorted_in_flat;
 use super::frame::Frame;
 use super::simplex;
-use super::sites::Sites;
-use super::triangulate::{sorted, weighted};
+use super::sites::{Rest, Sites};
+use super::triangulate::{Sorted, sorted, weighted};
 use crate::base::arrays::{Given, Side};
 use crate::base::error::Result;
 use crate::base::memory::{filled, push};
@@ -31,7 +32,23 @@ pub fn validate<const D: usize, const V: usize, const P: usize>(
     given: Given<D, V>,
     watch: &Watch,
 ) -> Result<Findings<D>> {
-    let (sites, rows, duplicates) = sorted::<D, P>(given.points)?;
+    validated(given, sorted::<D, P>(given.points)?, watch)
+}
+
+/// The same of points in a flat; `given` has their coordinates along its axes.
+pub fn validate_in_flat<const D: usize, const V: usize, const P: usize>(
+    given: Given<D, V>,
+    rest: &[Rest],
+    watch: &Watch,
+) -> Result<Findings<D>> {
+    validated(given, sorted_in_flat::<D, P>(given.points, rest)?, watch)
+}
+
+fn validated<const D: usize, const V: usize, const P: usize>(
+    given: Given<D, V>,
+    (sites, rows, duplicates): Sorted<D, P>,
+    watch: &Watch,
+) -> Result<Findings<D>> {
     let mut stands_for = filled(given.points.len(), 0)?;
     for (row, own) in (0..).zip(&mut stands_for) {
         *own = row;

@@ -26,7 +26,9 @@ class Kind(NamedTuple):
     texts: tuple[str, ...] = ("crs",)
 
     def fits(self, arrays: Mapping[str, NDArray[Any]]) -> bool:
-        """Tell whether the first array, which has the points, has the columns of this layout."""
+        """Tell whether all arrays are there, and the first, the points, has the same columns."""
+        if not self.layout.keys() <= arrays.keys():
+            return False
         name, (_, columns) = next(iter(self.layout.items()))
         shape = arrays[name].shape
         return columns == (int(shape[1]) if len(shape) > 1 else 0)
@@ -203,6 +205,8 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
             Kind(f"delone.Delaunay {ndim}-D", _delaunay(ndim), checks.check_delaunay)
             for ndim in HIGHER
         ),
+        # In a flat of fewer dimensions, it is recomputed from the points.
+        *(_input("Delaunay of a flat in", ndim) for ndim in HIGHER),
     ),
     "ConstrainedDelaunay": (_CONSTRAINED,),
     "Mesh": (_MESH,),

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from delone._base.types import Floats, Indices
 
-__all__ = ["HIGHER", "MOST"]
+__all__ = ["HIGHER", "MOST", "table"]
 
 # Maximum number of coordinates of a triangulation.
 MOST = 8
@@ -45,18 +45,20 @@ def _on_facets(points: Floats, facet: Indices, weights: Floats) -> Floats:
     return found
 
 
-HIGHER = {
-    d: Dimension(
+def table(d: int, locator: Any, *, simplex: str = "simplex") -> Dimension:
+    """Return the functions for simplices of points with d coordinates."""
+    return Dimension(
         ndim=d,
-        simplex="simplex",
+        simplex=simplex,
         boundary=boundary_facets,
         hull=_hull,
         faces=absent,
         quality=absent,
-        locator=_core.LocatorN,
+        locator=locator,
         located=_located,
         on_facets=_on_facets,
         delaunay=None,
     )
-    for d in range(4, MOST + 1)
-}
+
+
+HIGHER = {d: table(d, _core.LocatorN) for d in range(4, MOST + 1)}

@@ -116,7 +116,7 @@ def _cyclic(n: int, d: int) -> int:
     """Return the number of facets of a cyclic polytope."""
     if d % 2:
         return 2 * math.comb(max(0, n - (d + 1) // 2), d // 2)
-    return math.comb(n - d // 2, d // 2) + math.comb(max(0, n - d // 2 - 1), d // 2 - 1)
+    return math.comb(max(0, n - d // 2), d // 2) + math.comb(max(0, n - d // 2 - 1), d // 2 - 1)
 
 
 def _extrapolated(points: Floats, *, hull: bool) -> int | None:

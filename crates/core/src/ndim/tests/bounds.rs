@@ -114,7 +114,7 @@ fn check<const D: usize, const V: usize, const P: usize>() -> [f64; 4] {
                 used[stage] = used[stage].max(part);
             }
         };
-        let (value, bound) = Test::sphere(&a).value(&d, false);
+        let (value, bound) = Test::lifted(&a, None).value(&d, false);
         note(0, value, bound, &power);
         let (value, bound) = Test::plane(&a).value(&d, true);
         note(1, value, bound, &l[D - 1]);

@@ -1,0 +1,244 @@
+"""Triangulations and hulls of points in a flat of fewer dimensions than they have coordinates."""
+
+from __future__ import annotations
+
+import pickle
+from fractions import Fraction
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.oracles.tiers import seeds
+
+import delone
+from delone import ConvexHull, Delaunay
+from delone.interpolate import Linear
+
+# Coordinates and dimensions of flats, and how many points.
+CASES = [
+    (4, 2, 12),
+    (4, 3, 10),
+    (5, 2, 12),
+    (5, 4, 9),
+    (6, 3, 10),
+    (7, 5, 9),
+    (8, 2, 12),
+    (8, 6, 10),
+]
+
+
+def tilted(d: int, k: int, n: int, seed: int) -> np.ndarray:
+    """Points with small integer coordinates in a flat: ties and duplicates."""
+    random = np.random.default_rng((d, k, seed))
+    while True:
+        basis = random.integers(-2, 3, (k, d))
+        points = random.integers(0, 4, (n, k)) @ basis + random.integers(0, 3, d)
+        if np.linalg.matrix_rank(points[1:] - points[0]) == k:
+            return points.astype(float)
+
+
+def solved(rows: list[list[Fraction]]) -> list[Fraction] | None:
+    """The solution of linear equations, the last column on the right; None if not unique."""
+    left, width = [list(row) for row in rows], len(rows[0]) - 1
+    for k in range(width):
+        pivot = next((i for i in range(k, len(left)) if left[i][k]), None)
+        if pivot is None:
+            return None
+        left[k], left[pivot] = left[pivot], left[k]
+        left[k] = [x / left[k][k] for x in left[k]]
+        for i in range(len(left)):
+            if i != k and left[i][k]:
+                left[i] = [x - left[i][k] * y for x, y in zip(left[i], left[k], strict=True)]
+    return [left[k][width] for k in range(width)]
+
+
+def in_conflict(simplex: list[tuple[Fraction, ...]], p: tuple[Fraction, ...]) -> bool | None:
+    """Whether a point is in the perturbed sphere of a simplex of the flat; None if it is flat."""
+    size = len(simplex)
+    # Barycentric coordinates: all coordinates, and their sum, are reproduced.
+    rows = [[v[j] for v in simplex] + [p[j]] for j in range(len(p))]
+    shares = solved([*rows, [Fraction(1)] * (size + 1)])
+    if shares is None:
+        return None
+    square = lambda q: sum(x * x for x in q)  # noqa: E731
+    power = square(p) - sum(s * square(v) for s, v in zip(shares, simplex, strict=True))
+    if power:
+        return power < 0
+    involved = [(v, s) for v, s in zip(simplex, shares, strict=True) if s]
+    least, share = min([*involved, (p, Fraction(-1))])
+    return least == p or share < 0
+
+
+def defined(points: np.ndarray, k: int) -> set[tuple[tuple[Fraction, ...], ...]]:
+    """The simplices by the definition, from all subsets of k + 1 distinct points."""
+    distinct = sorted({tuple(map(Fraction, row)) for row in points.tolist()})
+    found = set()
+    for simplex in combinations(distinct, k + 1):
+        others = (p for p in distinct if p not in simplex)
+        conflicts = [in_conflict(list(simplex), p) for p in others]
+        if not any(each is None or each for each in conflicts) and conflicts:
+            found.add(simplex)
+    return found
+
+
+def corners_of(points: np.ndarray, simplices: np.ndarray) -> set[tuple[tuple[float, ...], ...]]:
+    return {tuple(sorted(map(tuple, points[row].tolist()))) for row in simplices}
+
+
+@pytest.mark.parametrize(("d", "k", "n"), CASES)
+@pytest.mark.parametrize("seed", seeds(2, deep=12))
+def test_simplices_are_those_of_the_definition(d: int, k: int, n: int, seed: int) -> None:
+    points = tilted(d, k, n, seed)
+    mesh = Delaunay(points, flat="project")
+    assert mesh.simplices.shape[1] == mesh.neighbors.shape[1] == k + 1
+    assert corners_of(points, mesh.simplices) == defined(points, k)
+    assert mesh.validate()
+    assert (points[mesh.duplicate_of] == points).all()
+
+
+@pytest.mark.parametrize(("d", "k", "n"), CASES)
+def test_the_order_of_rows_and_powers_of_two_do_not_matter(d: int, k: int, n: int) -> None:
+    points = tilted(d, k, 3 * n, 7)
+    wanted = corners_of(points, Delaunay(points, flat="project").simplices)
+    facets = corners_of(points, ConvexHull(points, flat="project").simplices)
+    order = np.random.default_rng(0).permutation(len(points))
+    for moved, scale in (
+        (points[order], 1.0),
+        (points * 2.0**-300, 2.0**-300),
+        (points * 2.0**400, 2.0**400),
+    ):
+        made = Delaunay(moved, flat="project").simplices
+        assert corners_of(moved / scale, made) == wanted
+        assert corners_of(moved / scale, ConvexHull(moved, flat="project").simplices) == facets
+
+
+@pytest.mark.parametrize("k", [2, 3, 4])
+def test_a_coordinate_flat_has_the_triangulation_of_its_columns(k: int) -> None:
+    random = np.random.default_rng(k)
+    low = random.integers(0, 4, (30, k)) / 3
+    for columns in ([*range(k)], [*range(5 - k, 5)]):
+        points = np.full((30, 5), 0.7)
+        points[:, columns] = low
+        mesh, own = Delaunay(points, flat="project"), Delaunay(low)
+        assert corners_of(low, mesh.simplices) == corners_of(low, own.simplices)
+        hull, plain = ConvexHull(points, flat="project"), ConvexHull(low)
+        assert hull.vertices.tolist() == sorted(plain.vertices.tolist())
+        assert corners_of(low, hull.simplices) == corners_of(low, plain.simplices)
+        assert hull.volume == pytest.approx(plain.volume, rel=1e-12)
+        assert hull.area == pytest.approx(plain.area, rel=1e-12)
+        sizes = own.areas if k == 2 else own.volumes
+        assert mesh.volumes.sum() == pytest.approx(sizes.sum(), rel=1e-12)
+        equations = hull.equations[:, [*columns, 5]]
+        assert sorted(equations.round(9).tolist()) == sorted(plain.equations.round(9).tolist())
+
+
+@pytest.mark.parametrize(("d", "k", "n"), CASES)
+def test_what_follows_from_simplices(d: int, k: int, n: int) -> None:
+    points = tilted(d, k, 2 * n, 3)
+    mesh, hull = Delaunay(points, flat="project"), ConvexHull(points, flat="project")
+    corners = points[mesh.simplices]
+    distances = np.linalg.norm(corners - mesh.circumcenters[:, None], axis=2)
+    assert distances == pytest.approx(distances[:, :1] * np.ones(k + 1), rel=1e-6)
+    # The centers are in the flat.
+    basis = np.linalg.svd(points - points[0])[2][k:]
+    off = (mesh.circumcenters - points[0]) @ basis.T
+    assert np.abs(off).max() < 1e-9 * np.abs(mesh.circumcenters).max()
+    # Sizes by Gram's determinant.
+    steps = corners[:, 1:] - corners[:, :1]
+    gram = np.linalg.det(steps @ steps.swapaxes(1, 2))
+    assert mesh.volumes**2 * float(np.prod(np.arange(1, k + 1)) ** 2) == pytest.approx(
+        gram, rel=1e-6
+    )
+    assert hull.volume == pytest.approx(mesh.volumes.sum(), rel=1e-9)
+    assert hull.validate()
+    sides = points @ hull.equations[:, :-1].T + hull.equations[:, -1]
+    assert sides.max() < 1e-9
+    on = (np.abs(sides) < 1e-9)[hull.simplices, np.arange(len(hull.simplices))[:, None]]
+    assert on.all()
+    assert np.abs(hull.equations[:, :-1] @ basis.T).max() < 1e-9
+    assert set(map(tuple, np.sort(mesh.convex_hull, axis=1).tolist()))
+    assert len(hull.edges) == len(
+        {tuple(sorted(e)) for f in hull.simplices.tolist() for e in combinations(f, 2)}
+    )
+    assert len(mesh.vertex_neighbor_vertices[1]) == 2 * len(mesh.edges)
+
+
+def test_queries_are_projected_along_the_other_axes() -> None:
+    # The third and fourth coordinate follow from the first two.
+    low = np.random.default_rng(1).integers(0, 9, (20, 2)).astype(float)
+    points = np.column_stack((low, low.sum(axis=1), 3 - low[:, 0]))
+    mesh, hull = Delaunay(points, flat="project"), ConvexHull(points, flat="project")
+    place = mesh.locate(points.mean(axis=0) + np.array([0, 0, 5, -5]))
+    corners = points[mesh.simplices[place.simplex]]
+    assert place.barycentric.shape == (3,)
+    assert place.barycentric @ corners == pytest.approx(points.mean(axis=0))
+    assert (mesh.find_simplex(points) >= 0).all()
+    assert mesh.find_simplex([(-9, 0, -9, 12)]).tolist() == [-1]
+    assert np.isnan(mesh.locate((-9, 0, -9, 12)).barycentric).all()
+    assert hull.contains([points[3], points[3] + [0, 0, 1, 1], (-9, 0, -9, 12)]).tolist() == [
+        True,
+        True,
+        False,
+    ]
+    assert (mesh.nearest(points) == mesh.duplicate_of).all()
+    # All coordinates count.
+    queries = points + np.array([0, 0, 0.1, 0])
+    near = mesh.nearest(queries)
+    squares = ((points[:, None] - queries) ** 2).sum(axis=2)
+    assert np.allclose(squares[near, np.arange(20)], squares.min(axis=0))
+    assert mesh.nearest([(np.nan, 0, 0, 0)]).tolist() == [-1]
+
+
+def test_files_pickles_and_faults(tmp_path: Path) -> None:
+    points = tilted(6, 3, 20, 4)
+    both: tuple[Any, ...] = Delaunay(points, flat="project"), ConvexHull(points, flat="project")
+    for made in both:
+        again = pickle.loads(pickle.dumps(made))
+        made.save(tmp_path / "flat.npz")
+        loaded = type(made).load(tmp_path / "flat.npz")
+        for other in (again, loaded):
+            assert (other.simplices == made.simplices).all()
+            assert (other.neighbors == made.neighbors).all()
+            assert repr(other) == repr(made)
+    mesh = both[0]
+    assert repr(mesh).endswith("tetrahedra>")
+    moved = mesh.points.copy()
+    # Another metric: the projections are the same, the triangulation is not Delaunay any more.
+    moved[:, 3:] *= 4
+    wrong = Delaunay._from_arrays(mesh._arrays() | {"points": moved})
+    assert not wrong.validate()
+
+
+def test_whole_dimensions_are_as_without_it() -> None:
+    points = np.random.default_rng(2).random((40, 4))
+    assert (Delaunay(points, flat="project").simplices == Delaunay(points).simplices).all()
+    assert (ConvexHull(points, flat="project").simplices == ConvexHull(points).simplices).all()
+
+
+def test_errors_name_it_and_what_it_cannot_do() -> None:
+    points = tilted(5, 3, 12, 5)
+    for made in (Delaunay, ConvexHull):
+        with pytest.raises(delone.DegenerateInputError, match='or pass flat="project"') as caught:
+            made(points)
+        assert len(caught.value.chain) == 4
+        with pytest.raises(delone.InputError, match="flat must be one of 'raise', 'project'"):
+            made(points, flat="flat")
+        for low in (points[:, :2], points[:, :3]):
+            with pytest.raises(delone.InputError, match="only available from 4-D on"):
+                made(low, flat="project")
+        line = np.arange(9.0)[:, None] * [1, 2, 3, 4, 5]
+        for few in (line, line[:1], line[:0]):
+            with pytest.raises(delone.DegenerateInputError) as caught:
+                made(few, flat="project")
+            assert "project" not in str(caught.value)
+    # Fewer points than coordinates may span a flat.
+    assert Delaunay(points[:4], flat="project").nsimplex >= 1
+    mesh = Delaunay(points, flat="project")
+    with pytest.raises(AttributeError, match="transform is not available for points in a flat"):
+        _ = mesh.transform
+    with pytest.raises(delone.InputError, match="points of the triangulation are in a flat"):
+        Linear(mesh, points[:, 0])
+    with pytest.raises(delone.InputError, match="points of the triangulation are in a flat"):
+        delone.AlphaComplex(mesh)
