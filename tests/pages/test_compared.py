@@ -46,6 +46,13 @@ def simplices_of_scipy(dimension: int) -> int:
     return len(spatial.Delaunay(points(dimension)).simplices)
 
 
+def halfspaces_of_scipy(dimension: int) -> spatial.HalfspaceIntersection:
+    """The half-spaces around a cube."""
+    sides = np.vstack((np.eye(dimension), -np.eye(dimension)))
+    rows = np.column_stack((sides, -np.ones(2 * dimension)))
+    return spatial.HalfspaceIntersection(rows, np.zeros(dimension))
+
+
 def triangles(order: np.ndarray) -> set[frozenset[tuple[float, ...]]]:
     mesh = spatial.Delaunay(GRID[order])
     return {frozenset(map(tuple, GRID[order][corners])) for corners in mesh.simplices}
@@ -111,6 +118,12 @@ CLAIMS: list[tuple[str, str, Callable[[], object], str]] = [
         "convex hulls",
         "SciPy",
         lambda: len(spatial.ConvexHull(points(4)).simplices),
+        "all dimensions",
+    ),
+    (
+        "intersections of half-spaces",
+        "SciPy",
+        lambda: len(halfspaces_of_scipy(5).intersections) == 32,
         "all dimensions",
     ),
     ("alpha shapes, concave hulls", "SciPy", lambda: has(spatial, "alpha", "concave"), "yes"),
