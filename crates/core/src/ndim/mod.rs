@@ -61,7 +61,7 @@ mod wrapping;
 
 pub use flat::{hull_in_flat, triangulate_in_flat};
 pub use hull::{Hull, hull};
-pub use lazy::{Lazy, Located};
+pub use lazy::{Lazy, Limits, Located};
 pub use location::{Hyper, Weighed, Within, nearest, within};
 pub use measure::{circumcenters, fault, orientations, transforms, volumes};
 pub use sites::{MOST, Rest};

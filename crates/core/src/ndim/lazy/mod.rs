@@ -16,7 +16,7 @@ mod search;
 mod sites;
 mod tree;
 
-pub use search::Counts;
+pub use search::{Counts, Limits};
 
 use search::{Search, Worker};
 
@@ -47,8 +47,13 @@ pub struct Lazy {
 impl Lazy {
     /// From finite points of `d` coordinates each, row by row, which must span the space.
     pub fn new(points: &[f64], d: usize, watch: &Watch) -> Result<Self> {
+        Self::limited(points, d, Limits::USUAL, watch)
+    }
+
+    /// The same with other limits, which do not change the simplices.
+    pub fn limited(points: &[f64], d: usize, limits: Limits, watch: &Watch) -> Result<Self> {
         Ok(Self {
-            search: Search::new(points, d, watch)?,
+            search: Search::new(points, d, limits, watch)?,
         })
     }
 

@@ -14,11 +14,23 @@ use crate::base::error::{Error, Result};
 use crate::base::memory::{copied, filled, push, with_room};
 use crate::base::watch::{Pace, Watch};
 
-/// Proposals before exact steps take over.
-const PROPOSALS: usize = 60;
+/// When fast steps, of which nobody knows that they end, give way to steps that end.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Proposals before exact steps.
+    pub proposals: usize,
+    /// Pivots by the largest conflict before those by the smallest number, which never cycle.
+    pub largest: usize,
+}
 
-/// Pivots by the largest conflict before those by the smallest number, which never cycle.
-const LARGEST: usize = 200;
+impl Limits {
+    /// Far more than are needed: queries of random points take one to three proposals, and exact
+    /// pivots some tens.
+    pub const USUAL: Self = Self {
+        proposals: 60,
+        largest: 200,
+    };
+}
 
 /// Units of work between two checks for interruption; a site that is tested is one.
 const PACE: usize = 1 << 16;
@@ -39,6 +51,7 @@ pub struct Search {
     first: OnceLock<Vec<u32>>,
     /// Affinely independent sites.
     spanning: Vec<u32>,
+    limits: Limits,
 }
 
 /// How many queries were answered in each way.
@@ -65,12 +78,13 @@ pub struct Worker {
 
 impl Search {
     /// From finite points, row by row, that span the space.
-    pub fn new(points: &[f64], d: usize, watch: &Watch) -> Result<Self> {
+    pub fn new(points: &[f64], d: usize, limits: Limits, watch: &Watch) -> Result<Self> {
         let sites = Sites::new(points, d)?;
         let mut search = Self {
             sites,
             first: OnceLock::new(),
             spanning: Vec::new(),
+            limits,
         };
         let mut pace = Pace::new(watch, PACE);
         let count = search.sites.len();
@@ -163,7 +177,7 @@ impl Search {
         let d = self.sites.d;
         let near = self.sites.nearest(&at.q, 6 * d + 30)?;
         let mut program = Program::new(at, &near)?;
-        for _ in 0..PROPOSALS {
+        for _ in 0..self.limits.proposals {
             pace.spend(near.len() * d)?;
             match program.run()? {
                 End::Lost => break,
@@ -317,7 +331,11 @@ impl Search {
     fn pivoted(&self, at: &Around, start: Proven, pace: &mut Pace) -> Result<Proven> {
         let mut simplex = start;
         for round in 0.. {
-            let most = if round < LARGEST { 1 } else { usize::MAX };
+            let most = if round < self.limits.largest {
+                1
+            } else {
+                usize::MAX
+            };
             let conflicts = self.conflicts(at, &mut simplex, most, pace)?;
             let Some(&enter) = conflicts.iter().min() else {
                 return Ok(simplex);

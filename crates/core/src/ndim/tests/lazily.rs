@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use num_bigint::BigInt;
 
-use super::super::lazy::{Counts, Lazy, Located};
+use super::super::lazy::{Counts, Lazy, Limits, Located};
 use super::super::{Simplices, triangulate};
 use super::brute::{canonical, integers, orientation, rank};
 use super::sets::{Random, kinds};
@@ -54,12 +54,12 @@ fn encloses<const D: usize>(at: &[Vec<BigInt>], v: &[u32], q: &[BigInt]) -> bool
 }
 
 /// Asks for small hostile sets, where every simplex is known.
-fn check_small<const D: usize, const V: usize>(seeds: u64, all: &mut Counts) {
+fn check_small<const D: usize, const V: usize>(seeds: u64, limits: Limits, all: &mut Counts) {
     for seed in 0..seeds {
         let mut r = Random::new(seed * 31 + D as u64);
         for (kind, points) in kinds::<D>(&mut r) {
             let name = format!("{D}-D {kind} {seed}");
-            let lazy = match Lazy::new(points.as_flattened(), D, &IDLE) {
+            let lazy = match Lazy::limited(points.as_flattened(), D, limits, &IDLE) {
                 Ok(lazy) => lazy,
                 Err(Error::Flat { rows, .. }) => {
                     assert!(rank(&points) < D, "{name}: not flat");
@@ -117,14 +117,33 @@ fn check_small<const D: usize, const V: usize>(seeds: u64, all: &mut Counts) {
 #[test]
 fn small_sets_have_the_canonical_simplex() {
     let mut all = Counts::default();
-    check_small::<2, 3>(8, &mut all);
-    check_small::<3, 4>(5, &mut all);
-    check_small::<4, 5>(3, &mut all);
-    check_small::<5, 6>(2, &mut all);
-    check_small::<6, 7>(1, &mut all);
+    let limits = Limits::USUAL;
+    check_small::<2, 3>(8, limits, &mut all);
+    check_small::<3, 4>(5, limits, &mut all);
+    check_small::<4, 5>(3, limits, &mut all);
+    check_small::<5, 6>(2, limits, &mut all);
+    check_small::<6, 7>(1, limits, &mut all);
     println!("{all:?}");
     for count in [all.proposed, all.pivots, all.apart, all.walks, all.again] {
         assert!(count > 20, "{all:?}");
+    }
+}
+
+#[test]
+fn steps_that_end_find_the_same_simplices() {
+    // Without proposals, exact pivots lead to a simplex and a walk from there. Without pivots by the
+    // largest conflict, those by the smallest number remain.
+    for (proposals, largest) in [(0, 200), (0, 0), (1, 0), (60, 0), (60, 1)] {
+        let mut all = Counts::default();
+        let limits = Limits { proposals, largest };
+        check_small::<2, 3>(3, limits, &mut all);
+        check_small::<3, 4>(2, limits, &mut all);
+        check_small::<4, 5>(1, limits, &mut all);
+        check_small::<5, 6>(1, limits, &mut all);
+        if proposals == 0 {
+            assert_eq!((all.proposed, all.pivots), (0, 0));
+        }
+        assert!(all.walks > 20, "{all:?}");
     }
 }
 
