@@ -5,8 +5,11 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
 
+use super::super::cell::Mesh;
 use super::super::filter::{Test, barycentric, invert, minus};
 use super::super::fine::Fine;
+use super::super::frame::Integers;
+use super::super::sites::{MOST, Sites};
 use super::sets::Random;
 use crate::base::wide::scaled;
 
@@ -43,15 +46,30 @@ fn truth<const D: usize, const V: usize, const P: usize>(
 ) -> Option<(BigRational, Vec<BigRational>)> {
     let from = |q: &[f64; P]| -> Vec<_> { (0..D).map(|k| exact(q[k]) - exact(v[0][k])).collect() };
     let a: Vec<Vec<BigRational>> = v[1..].iter().map(from).collect();
-    let square = |r: &[BigRational]| r.iter().map(|x| x * x).sum::<BigRational>();
-    let x = solved(a.iter().map(|r| [&r[..], &[square(r)]].concat()).collect())?;
+    let lifts: Vec<_> = a.iter().map(|r| square(r)).collect();
     let d = from(p);
-    let across: BigRational = x.iter().zip(&d).map(|(x, d)| x * d).sum();
+    let power = power(&a, &lifts, &d, square(&d))?;
     let columns = (0..D).map(|k| {
         let column: Vec<_> = a.iter().map(|r| r[k].clone()).collect();
         [&column[..], &[d[k].clone()]].concat()
     });
-    Some((square(&d) - across, solved(columns.collect())?))
+    Some((power, solved(columns.collect())?))
+}
+
+fn square(r: &[BigRational]) -> BigRational {
+    r.iter().map(|x| x * x).sum()
+}
+
+/// The height of a point at `d` above the plane through those of the rows of `a`.
+fn power(
+    a: &[Vec<BigRational>],
+    heights: &[BigRational],
+    d: &[BigRational],
+    height: BigRational,
+) -> Option<BigRational> {
+    let rows = a.iter().zip(heights);
+    let x = solved(rows.map(|(r, h)| [&r[..], &[h.clone()]].concat()).collect())?;
+    Some(height - x.iter().zip(d).map(|(x, d)| x * d).sum::<BigRational>())
 }
 
 /// A simplex inside the unit cube, and a point: scattered, far away, thin, near a sphere.
@@ -129,6 +147,94 @@ fn check<const D: usize, const V: usize, const P: usize>() -> [f64; 4] {
         note(3, value, bound, &power);
     }
     used
+}
+
+/// Sites with weights of one kind, or in a flat: the corners and then a point.
+fn lifted<const D: usize, const V: usize, const P: usize>(
+    r: &mut Random,
+    kind: u64,
+) -> Option<Sites<D, P>> {
+    let (v, p) = drawn::<D, V, P>(r, kind / 5);
+    let short = |q: &[f64; P]| -> [f64; D] { std::array::from_fn(|k| q[k]) };
+    let at: Vec<[f64; D]> = v.iter().chain([&p]).map(short).collect();
+    if kind % 5 == 4 {
+        let steep = 2f64.powi(r.integer(-4, 12) as i32);
+        let rest = |q: &[f64; D]| {
+            std::array::from_fn(|k| if k < MOST - D { steep * q[k % D] } else { 0.0 })
+        };
+        return Sites::in_flat(at.clone(), at.iter().map(rest).collect()).ok();
+    }
+    let of = |q: &[f64; D]| q.iter().map(|x| x * x).sum::<f64>();
+    let mut weights: Vec<f64> = match kind % 5 {
+        0 => at.iter().map(|_| r.unit() - 0.5).collect(),
+        // Lifted points in one plane but for roundings: the center is that of coordinates, not of
+        // the points.
+        1 => at.iter().map(of).collect(),
+        2 => at.iter().map(|_| 1e6 * r.unit()).collect(),
+        _ => vec![0.0; V + 1],
+    };
+    if kind % 5 == 3 {
+        weights[V] = 1e6 * r.unit();
+    }
+    Sites::weighted(at, weights).ok()
+}
+
+/// The same of heights with weights and in flats.
+fn check_lifted<const D: usize, const V: usize, const P: usize>() -> [f64; 2] {
+    let mut r = Random::new(5 + D as u64);
+    let mut used = [0.0f64; 2];
+    // Fractions of many coordinates take long.
+    for kind in 0..if D < 5 { 400 } else { 100 } {
+        let Some(sites) = lifted::<D, V, P>(&mut r, kind) else {
+            panic!("no sites");
+        };
+        let from = |i: usize| -> Vec<_> {
+            (0..D)
+                .map(|k| exact(sites.scaled[i][k]) - exact(sites.scaled[0][k]))
+                .collect()
+        };
+        let a: Vec<_> = (1..V).map(from).collect();
+        // In units of the scaled coordinates.
+        let unit = BigRational::new(BigInt::from(1), BigInt::from(1) << (-2 * sites.unit));
+        let height =
+            |i: usize| square(&from(i)) - BigRational::from(sites.wide_weight(i as u32, 0)) * &unit;
+        let heights: Vec<_> = (1..V).map(height).collect();
+        let Some(truth) = power(&a, &heights, &from(V), height(V)) else {
+            continue;
+        };
+        let corners: [u32; V] = std::array::from_fn(|i| i as u32);
+        let points: [&[f64; P]; V] = std::array::from_fn(|i| &sites.scaled[i]);
+        let pairs = std::array::from_fn(|i| sites.weight_pair(i as u32 + 1, 0));
+        let fine = Fine::<D>::lifted(&points, pairs);
+        let refined = fine.power(&sites.scaled[V], points[0], sites.weight_pair(V as u32, 0));
+        let Ok(mesh) = Mesh::<D, V, P>::new(sites, corners) else {
+            continue;
+        };
+        for (stage, (value, bound)) in [mesh.value(0, V as u32), refined].into_iter().enumerate() {
+            if bound.is_finite() {
+                let part = gap(value, &truth) / bound;
+                assert!(part <= 1.0, "{D}-D stage {stage} kind {kind}: {part}");
+                used[stage] = used[stage].max(part);
+            }
+        }
+    }
+    used
+}
+
+#[test]
+fn bounds_of_lifted_heights_hold_and_are_not_loose() {
+    for used in [
+        check_lifted::<2, 3, 4>(),
+        check_lifted::<3, 4, 4>(),
+        check_lifted::<4, 5, 4>(),
+        check_lifted::<5, 6, 8>(),
+        check_lifted::<7, 8, 8>(),
+    ] {
+        println!("{used:?}");
+        for part in used {
+            assert!(part > 1e-4, "{used:?}");
+        }
+    }
 }
 
 #[test]
