@@ -9,6 +9,7 @@ import pytest
 FOLDER = Path(__file__).parents[2] / "benchmarks"
 SMALL = {
     "alpha.py": ["--n", "300", "--runs", "1"],
+    "higher.py": ["--sets", "4-D uniform,6-D compositions", "--size", "0.02", "--rounds", "1"],
     "hull.py": ["--n", "2000", "--runs", "1"],
     "improve.py": ["300"],
     "interpolate.py": ["--n", "50", "--queries", "100", "--runs", "1"],
