@@ -54,6 +54,9 @@ def located(
     Segments include their ends.
     """
     points, simplices, neighbors, constrained = tiling
+    if not len(seeds):
+        # Without a check of all triangles.
+        return np.empty(0, dtype=np.int32), np.empty(0, dtype=bool)
     triangle = _core.find_simplex2(points, simplices, neighbors, seeds, workers)
     on_edge = on_edges(tiling, triangle, seeds)
     on_segment: Bools = np.any(on_edge & constrained[triangle], axis=1)

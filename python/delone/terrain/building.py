@@ -360,10 +360,10 @@ def compact(  # noqa: PLR0917
     return Built(
         mesh.points[used],
         z[used],
-        number[mesh.simplices].astype(np.int32),
-        mesh.neighbors.copy(),
+        number[mesh.simplices],
+        mesh.neighbors,
         kept,
-        number[mesh.segments].astype(np.int32),
+        number[mesh.segments],
         soft,
         crs,
         units,

@@ -53,6 +53,9 @@ class Claims(NamedTuple):
     @classmethod
     def joined(cls, parts: list[Claims]) -> Claims:
         """Combine several."""
+        parts = [part for part in parts if len(part.vertex)] or parts[:1]
+        if len(parts) == 1:
+            return parts[0]
         return cls(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
     def among(self, rows: Bools) -> Claims:
@@ -111,7 +114,12 @@ def resolved(
     first = _reduced(points, of_points, duplicates, tolerance, "points", "duplicates")
     second = _reduced(points, of_lines, crossing, tolerance, "lines", "crossing")
     both = Claims.joined([second, first])
-    last = _reduced(points, both, duplicates, tolerance, "a line and a point", "duplicates")
+    alone = not (len(first.vertex) and len(second.vertex))
+    last = (
+        both
+        if alone
+        else _reduced(points, both, duplicates, tolerance, "a line and a point", "duplicates")
+    )
     found = np.full(len(points), np.nan)
     found[last.vertex] = last.z
     return found
