@@ -54,7 +54,7 @@ def test_lines_stay_unless_told(hill, figures):
         ([], "give one of --max-error and --max-triangles"),
         (["--max-error", "1", "--max-triangles", "9"], "give one of --max-error"),
         (["--max-error", "1", "--keep", "lines"], "keep must be"),
-        (["--max-error", "-1"], "from 0 on, got -1"),
+        (["--max-error", "-1"], "at least 0 and finite, got -1"),
         (["--max-triangles", "1"], "below the 2 triangles"),
         (["--max-error", "1", "-o", "small.docx"], "docx"),
     ],

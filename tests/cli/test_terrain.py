@@ -281,7 +281,7 @@ def test_contours_of_tiles_are_written_in_parts(figures, monkeypatch, tmp_path, 
         (["--value", "intensity"], "--value is for tiles"),
         (["--bounds", "1,2,3"], "--bounds takes four numbers"),
         (["--crs", "EPSG:0"], "not a reference system"),
-        (["--hillshade", "--altitude", "100"], "altitude must be between 0 and 90"),
+        (["--hillshade", "--altitude", "100"], "altitude (degrees) must be from 0 to 90"),
     ],
 )
 def test_wrong_options_of_dem(folder, command, options, message):

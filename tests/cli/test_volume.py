@@ -89,7 +89,10 @@ def test_figures_have_units_and_each_row(folder, figures, command):
         (("--regions", "the lots.gpkg", "-o", "x.txt"), "only be written to .csv .gpkg"),
         (("--regions", "the lots.gpkg", "-o", "the lots.gpkg"), "would replace the input"),
         (("--regions", "the lots.gpkg", "--regions-layer", "x"), "has no layer 'x'"),
-        (("--regions", "the lots.gpkg", "--units", "furlong"), "units must be one of mm, cm"),
+        (
+            ("--regions", "the lots.gpkg", "--units", "furlong"),
+            "units must be a unit of length (mm, cm",
+        ),
     ],
 )
 def test_what_does_not_go_together_is_refused(folder, command, monkeypatch, options, words):

@@ -516,8 +516,8 @@ def test_points_and_rows_that_are_no_real_numbers() -> None:
     half = [0.5, 0.5]
     for rows, point, error, words in (
         (SQUARE, np.ma.masked_array(half, [True, False]), DtypeError, "point must not be a masked"),
-        (SQUARE, np.array([0.5, 0.5j]), DtypeError, "interior_point must contain real numbers"),
-        (SQUARE, ["0.5", "0.5"], DtypeError, "interior_point must contain real numbers"),
+        (SQUARE, np.array([0.5, 0.5j]), DtypeError, "interior_point must hold real numbers"),
+        (SQUARE, ["0.5", "0.5"], DtypeError, "interior_point must hold real numbers"),
         (SQUARE, [[1], [1, 2]], ShapeError, "interior_point has rows of unequal length"),
         ([[object()] * 3] * 4, half, DtypeError, "halfspaces must contain real numbers"),
         ([[10**400, 0, -1], [0, 1, -1]], half, DtypeError, "halfspaces must contain real numbers"),

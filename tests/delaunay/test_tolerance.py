@@ -54,7 +54,7 @@ def test_holes_and_bad_tolerances() -> None:
     assert mesh.find_simplex((1.2, 1.125), tolerance=0.125) >= 0
     assert mesh.find_simplex((1.2, 1.125), tolerance=0.124) == -1
     for bad in (-1.0, float("nan")):
-        with pytest.raises(InputError, match="tolerance must be a number of at least 0"):
+        with pytest.raises(InputError, match="tolerance must be at least 0"):
             mesh.find_simplex((0, 0), tolerance=bad)
 
 

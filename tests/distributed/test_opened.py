@@ -43,7 +43,7 @@ def test_figures(tin: distributed.TiledDelaunay) -> None:
     assert (tin.npoints, tin.nsimplex) == (len(SURVEY.points), len(right.simplices))
     assert np.array_equal(tin.bounds, [*right.min_bound, *right.max_bound])
     assert str(tin.ntiles) in repr(tin)
-    with pytest.raises(InputError, match="tile must be from 0"):
+    with pytest.raises(InputError, match="number must be an integer from 0"):
         tin.tile(tin.ntiles)
 
 

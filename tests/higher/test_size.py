@@ -82,7 +82,7 @@ def test_max_bytes() -> None:
     with pytest.raises(delone.TooLargeError):
         ConvexHull(points, max_bytes=10**4)
     for bad in (0, -5, math.nan):
-        with pytest.raises(delone.InputError, match="max_bytes must be positive"):
+        with pytest.raises(delone.InputError, match="max_bytes must be above 0"):
             Delaunay(points, max_bytes=bad)
     with pytest.raises(delone.DtypeError):
         Delaunay(points, max_bytes="1 GB")

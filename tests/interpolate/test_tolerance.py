@@ -87,7 +87,7 @@ def test_rasters_reach_their_last_row() -> None:
     on_the_side = np.diagonal(near.values)
     assert np.isnan(np.diagonal(exact.values)).any()
     np.testing.assert_allclose(on_the_side, plane(np.column_stack((x, y))), rtol=1e-14)
-    with pytest.raises(InputError, match="tolerance must be a number of at least 0, got -1"):
+    with pytest.raises(InputError, match="tolerance must be at least 0, got -1"):
         grid(corners, plane(corners), x=x, y=y, tolerance=-1)
 
 

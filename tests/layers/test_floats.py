@@ -36,7 +36,6 @@ VALUE = "a step of a numerical method, which changes values and not what is join
 ALLOWED: dict[str, dict[str, str]] = {
     "areal/shared.py": {"areas > 0": EMPTY},
     "cli/areal.py": {"areas > 0": EMPTY},
-    "alpha/concave.py": {"length < 0": CHECK},
     "_tiling/archive/directions.py": {"areas > 0": CHECK},
     "cli/show.py": {"area < 1000000.0": CHECK},
     "compat/interpolate.py": {
@@ -73,7 +72,6 @@ ALLOWED: dict[str, dict[str, str]] = {
         "length > 0": EXACT,
     },
     "io/landxml_survey.py": {"np.hypot(*away) <= max(_GAP, _SAME * length)": CHECK},
-    "io/reading.py": {"distance > 0": CHECK},
     "_tiling/location.py": {
         "distance + error <= limit": FILTER,
         "distance - error > limit": FILTER,
@@ -83,7 +81,6 @@ ALLOWED: dict[str, dict[str, str]] = {
     "refine/report.py": {
         "np.hypot(*(points[u] - points[v]).T) < np.minimum(d, e)": WANTED,
     },
-    "compat/tetgen.py": {"volume >= 0": CHECK},
     "compat/tetgen_switches.py": {"volume <= 0": CHECK},
     # Where sizes are asked for at further positions.
     "solids/tetmesh/lengths.py": {"np.linalg.norm(ends, axis=2).max(axis=1) > self._large": WANTED},

@@ -95,7 +95,7 @@ def test_a_band_around_the_globe() -> None:
 
 def test_what_is_not_understood_is_refused() -> None:
     cells = sphere.Voronoi(lonlat=OCTAHEDRON)
-    with pytest.raises(InputError, match="step must be positive"):
+    with pytest.raises(InputError, match="step must be above 0"):
         cells.to_geopandas(step=0)
     with pytest.raises(InputError, match="data has 2 rows for 6 points"):
         cells.to_geopandas({"a": [1, 2]})

@@ -247,7 +247,7 @@ def test_gradients_at_poles_sites_and_outside():
     assert np.isnan(natural.gradient([(10, 10), (60, 0), (np.nan, 0)])).all()
     assert np.isfinite(natural.gradient((0, 1))).all()
     for radius in (0.0, -1.0, np.nan, np.inf):
-        with pytest.raises(InputError, match="radius must be positive"):
+        with pytest.raises(InputError, match="radius must be above 0"):
             natural.gradient((0, 1), radius=radius)
 
 

@@ -87,7 +87,7 @@ def test_inverse_distances_by_their_definition() -> None:
         assert np.allclose(table[row, own], expected / expected.sum(), rtol=1e-6)
         assert np.count_nonzero(table[row]) == len(own)
     for power in (0, -1, np.inf):
-        with pytest.raises(delone.InputError, match="power must be positive"):
+        with pytest.raises(delone.InputError, match="power must be above 0"):
             Weights.between(SOURCE, TARGET, "inverse_distance", power=power)
 
 

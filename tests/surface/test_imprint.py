@@ -251,7 +251,7 @@ def test_a_power_of_two_scales_the_result(power: int) -> None:
 @pytest.mark.parametrize("tolerance", [-1.0, math.nan, math.inf])
 def test_a_tolerance_is_a_distance(tolerance: float) -> None:
     points, faces = box((0, 0, 0), (1, 1, 1))
-    with pytest.raises(delone.InputError, match="tolerance must be finite and at least 0"):
+    with pytest.raises(delone.InputError, match="tolerance must be at least 0 and finite"):
         delone.imprint_surface(points, faces, tolerance=tolerance)
 
 

@@ -131,9 +131,9 @@ def test_few_points_and_duplicates():
 @pytest.mark.parametrize(
     ("option", "message"),
     [
-        ({"cell": 0}, "cell must be finite and above 0"), ({"cell": 1e-12}, "too small"),
+        ({"cell": 0}, "cell must be above 0 and finite"), ({"cell": 1e-12}, "too small"),
         ({"angle": 90}, "between 0 and 90"), ({"distance": np.inf}, "distance"),
-        ({"thickness": -1}, "from 0 on"), ({"max_iter": 0}, "max_iter"), ({"low": 0}, "low"),
+        ({"thickness": -1}, "at least 0"), ({"max_iter": 0}, "max_iter"), ({"low": 0}, "low"),
         ({"edge": np.nan}, "edge"),
     ],
 )  # fmt: skip

@@ -293,7 +293,7 @@ def test_units_are_written_and_never_mixed(tmp_path):
     with pytest.warns(delone.UnitsWarning, match="names none"):
         write_mesh(tmp_path / "b.xml", unknown)
     assert TIN.from_file(tmp_path / "b.xml").units is None
-    with pytest.raises(InputError, match="units must be one of"):
+    with pytest.raises(InputError, match="units must be a unit of length"):
         TIN.from_points(xyz, units="furlong")
 
 

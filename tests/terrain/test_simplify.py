@@ -253,9 +253,9 @@ def test_validation_finds_a_point_above_the_limit():
     [
         ({}, "give one of max_error and max_triangles"),
         ({"max_error": 1, "max_triangles": 9}, "give one of max_error and max_triangles"),
-        ({"max_error": -1}, "from 0 on, got -1"),
-        ({"max_error": np.nan}, "from 0 on, got nan"),
-        ({"max_error": np.inf}, "from 0 on, got inf"),
+        ({"max_error": -1}, "at least 0 and finite, got -1"),
+        ({"max_error": np.nan}, "at least 0 and finite, got nan"),
+        ({"max_error": np.inf}, "at least 0 and finite, got inf"),
         ({"max_triangles": 0}, "max_triangles must be an integer of at least 1"),
         (
             {"max_triangles": 1},

@@ -78,5 +78,5 @@ def test_holes_of_the_surface_stay():
 @pytest.mark.parametrize("what", ["contours", "bands"])
 @pytest.mark.parametrize("least", [-1, math.nan, math.inf])
 def test_measures_out_of_range(what, least):
-    with pytest.raises(InputError, match="min_area must be finite and at least 0"):
+    with pytest.raises(InputError, match="min_area must be at least 0 and finite"):
         getattr(bumps(0), what)(interval=1, min_area=least)

@@ -170,7 +170,7 @@ def test_points_alone():
 
 def test_bad_distances():
     for bad in (-1, np.nan, np.inf):
-        with pytest.raises(InputError, match="snap must be a distance"):
+        with pytest.raises(InputError, match="snap must be at least 0"):
             TIN.from_points(SQUARE, snap=bad)
     many = np.random.default_rng(0).random((20_000, 3)) * [1, 1, 0]
     with pytest.raises(BudgetExceededError, match="simplify"):

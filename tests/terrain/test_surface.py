@@ -189,7 +189,7 @@ def test_positions_on_a_slanted_side_have_heights(monkeypatch, block):
     options = {"x": np.linspace(0, 3, 31), "y": np.linspace(0, 1, 31), "tolerance": 1e-15}
     assert np.diagonal(tin.raster(**options).values) == pytest.approx(side[:, 0])
     assert np.diagonal(tin.raster("slope", **options).values) == pytest.approx(45)
-    with pytest.raises(InputError, match="tolerance must be a number of at least 0"):
+    with pytest.raises(InputError, match="tolerance must be at least 0"):
         tin.raster(tolerance=-1, resolution=1)
 
 

@@ -97,7 +97,7 @@ def test_no_room_for_a_double(ulps: int) -> None:
         ({"extra_points": [(4, 1, 1)]}, delone.InputError, "extra_points: 1 point on a face"),
         ({"extra_points": [(1, 1, 1)] * 2}, delone.InputError, "rows repeat others"),
         ({"face_markers": [1]}, delone.ShapeError, "face_markers must have shape"),
-        ({"face_markers": [0.5] * 12}, delone.DtypeError, "face_markers must be integers"),
+        ({"face_markers": [0.5] * 12}, delone.DtypeError, "face_markers must hold integers"),
         ({"face_markers": [2**40] * 12}, delone.InputError, "32-bit"),
         ({"max_points": -1}, delone.InputError, "max_points"),
         ({"progress": 3}, delone.DtypeError, "progress"),

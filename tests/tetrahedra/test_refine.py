@@ -268,7 +268,7 @@ def test_a_limit_stops_it_or_refuses_before() -> None:
         ({"min_angle": 71}, InputError, "min_angle must be from 0"),
         ({"ratio": 0}, InputError, "ratio must be above 0"),
         ({"boundary": "none"}, InputError, "boundary must be one of"),
-        ({"marked": [99]}, InputError, "numbers of tetrahedra, from 0 to 5"),
+        ({"marked": [99]}, InputError, "rows of tetrahedra, from 0 to 5, got 99"),
         ({"marked": [True]}, ShapeError, "marked must have shape"),
         ({"max_points": -1}, InputError, "max_points"),
         ({"progress": 3}, DtypeError, "progress must be a function"),

@@ -170,7 +170,7 @@ def as_vectors(values: ArrayLike, d: int, *, name: str = "points") -> NDArray[np
         return np.empty((0, d))
     if array.ndim == 0 or array.shape[-1] != d:
         _refuse_kind(array, name)
-        raise ShapeError(f"{name} must have shape (..., {d}), got {array.shape}")
+        raise wrong_shape(name, f"(..., {d})", array)
     if array.ndim == 2:
         # Coordinates of geometries are floats already, so no integer can have been rounded.
         found = array if getattr(values, "ndim", 2) == 1 else values
@@ -236,7 +236,7 @@ def as_segments(segments: ArrayLike, npoints: int, *, name: str = "segments") ->
     if array.shape in ((0,), (0, 2)):
         return np.empty((0, 2), dtype=np.int32)
     if array.ndim != 2 or array.shape[1] != 2:
-        raise ShapeError(f"{name} must have shape (s, 2), got {array.shape}")
+        raise wrong_shape(name, "(s, 2)", array)
     if array.dtype.kind not in "iu":
         raise DtypeError(f"{name} must hold integers (rows of points), got dtype {array.dtype}")
     if int(array.min()) < 0 or int(array.max()) >= npoints:
@@ -345,6 +345,33 @@ def _as_integer(value: int, least: int, wanted: str) -> int:
     except TypeError:
         raise DtypeError(f"{wanted}, got {value!r:.60}") from None
     if number < least:
+        raise InputError(f"{wanted}, got {number!s:.60}")
+    return number
+
+
+def wrong_shape(name: str, wanted: object, array: NDArray[Any]) -> ShapeError:
+    """Return the error for an array whose shape is not the one that is wanted."""
+    return ShapeError(f"{name} must have shape {wanted}, got {array.shape}")
+
+
+def require_integers(array: NDArray[Any], name: str) -> None:
+    """Reject an array of anything but integers."""
+    if array.dtype.kind not in "iu":
+        raise DtypeError(f"{name} must hold integers, got dtype {array.dtype}")
+
+
+def as_text(text: Any, *, name: str) -> str:
+    """Return a string; anything else raises an error."""
+    if isinstance(text, str):
+        return text
+    raise DtypeError(f"{name} must be a string, got {text!r:.60}")
+
+
+def as_index(n: int, low: int, high: int, *, name: str) -> int:
+    """Return an integer of a closed range as a Python integer; booleans are rejected."""
+    wanted = f"{name} must be an integer from {low} to {high}"
+    number = _as_integer(n, low, wanted)
+    if number > high:
         raise InputError(f"{wanted}, got {number!s:.60}")
     return number
 
@@ -501,9 +528,8 @@ def _as_indices(
 ) -> NDArray[np.int32]:
     array = as_plain_array(values, name)
     if array.ndim != 2 or array.shape[1] != columns:
-        raise ShapeError(f"{name} must have shape (m, {columns}), got {array.shape}")
-    if array.dtype.kind not in "iu":
-        raise DtypeError(f"{name} must hold integers, got dtype {array.dtype}")
+        raise wrong_shape(name, f"(m, {columns})", array)
+    require_integers(array, name)
     if array.size and (int(array.min()) < lowest or int(array.max()) >= end):
         bad = array >= end
         if array.dtype.kind == "i":

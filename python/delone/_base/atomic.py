@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from delone._base.files import no_folder, not_regular
 from delone.errors import DeloneError, OutputError
 
 if TYPE_CHECKING:
@@ -49,9 +50,9 @@ def check_target(path: str | os.PathLike[str]) -> Path:
     if not target.parent.is_dir():
         raise FileNotFoundError(f"{path}: the folder {target.parent} does not exist")
     if target.is_dir():
-        raise IsADirectoryError(f"{path} is a folder, not a file")
+        raise IsADirectoryError(no_folder(path))
     if target.exists() and not target.is_file():
-        raise OSError(f"{path} is not a regular file")
+        raise not_regular(path)
     if not os.access(target.parent, os.W_OK | os.X_OK):
         raise PermissionError(f"{path}: the folder {target.parent} is not writable")
     return target

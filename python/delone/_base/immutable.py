@@ -49,11 +49,11 @@ class Immutable:
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
         return self
 
-    def __setattr__(self, name: str, value: object) -> NoReturn:
-        raise AttributeError(f"a {type(self).__name__} cannot be changed: {name}")
-
     def __delattr__(self, name: str) -> NoReturn:
         raise AttributeError(f"a {type(self).__name__} cannot be changed: {name}")
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        self.__delattr__(name)
 
 
 class ReadOnly:

@@ -76,7 +76,9 @@ def as_units(units: Any, *, name: str = "units") -> str | None:
     word = units.strip().casefold()
     found = word if word in METERS else _WORDS.get(word, _WORDS.get(word.removesuffix("s")))
     if found is None:
-        raise InputError(f"{name} must be one of {', '.join(METERS)}, got {units!r:.60}")
+        raise InputError(
+            f"{name} must be a unit of length ({', '.join(METERS)}), got {units!r:.60}"
+        )
     return found
 
 

@@ -14,11 +14,13 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._base.arrays import as_number, as_vectors, as_workers, require_finite
+from delone._base.arrays import as_vectors, as_workers, require_finite
 from delone._base.blocks import blocks
+from delone._base.numbers import as_nonnegative
 from delone._base.renames import renamed
+from delone._base.values import require_shape
 from delone._tiling.dimension import FLAT_OR_SOLID
-from delone.errors import InputError, ShapeError
+from delone.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -162,7 +164,7 @@ def locate_near(
     workers: int | None,
 ) -> Location:
     """Locate points; those at most `tolerance` outside, at the nearest point of the boundary."""
-    limit = as_tolerance(tolerance)
+    limit = as_nonnegative(tolerance, name="tolerance")
     if limit and dimension.ndim not in FLAT_OR_SOLID:
         raise InputError(
             "tolerance is only available in 2-D and 3-D: in more dimensions distances from the "
@@ -198,14 +200,6 @@ def locate_near(
         facet.reshape((*leading, d)),
         shares.reshape((*leading, d)),
     )
-
-
-def as_tolerance(tolerance: float) -> float:
-    """Check a distance beyond the boundary that counts as inside."""
-    limit = as_number(tolerance, name="tolerance")
-    if not limit >= 0:
-        raise InputError(f"tolerance must be a number of at least 0, got {tolerance!r:.60}")
-    return limit
 
 
 def _are_near(
@@ -269,7 +263,6 @@ def segment_ends(a: ArrayLike, b: ArrayLike) -> tuple[Floats, Floats]:
 
 def _end(point: ArrayLike, name: str) -> Floats:
     end = as_vectors(point, 2, name=name)
-    if end.ndim != 1:
-        raise ShapeError(f"{name} must be one point, got shape {end.shape}")
-    require_finite(end.reshape(1, 2), name=name)
+    require_shape(end, (2,), name)
+    require_finite(end[None], name=name)
     return end

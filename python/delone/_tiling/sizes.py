@@ -11,16 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._base.arrays import as_number, as_plain_array
+from delone._base.arrays import as_plain_array
+from delone._base.values import as_marks, require_real
 from delone._tiling.triangulation import Triangulation
-from delone.errors import DtypeError, InputError, ShapeError
+from delone.errors import DtypeError, InputError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone._base.types import Floats
 
-__all__ = ["checked", "chosen", "evaluator", "formatted", "is_number", "positive", "rounded"]
+__all__ = ["checked", "chosen", "evaluator", "formatted", "is_number", "require_region", "rounded"]
 
 _NOUNS = {2: "triangles", 3: "tetrahedra"}
 
@@ -28,14 +29,6 @@ _NOUNS = {2: "triangles", 3: "tetrahedra"}
 def is_number(value: Any) -> bool:
     """Return whether a size is one number."""
     return isinstance(value, int | float | np.integer | np.floating)
-
-
-def positive(value: Any, name: str) -> float:
-    """Return a number above 0."""
-    number = as_number(value, name=name)
-    if not number > 0:
-        raise InputError(f"{name} must be above 0, got {value!r:.80}")
-    return number
 
 
 def formatted(position: Floats) -> str:
@@ -46,8 +39,7 @@ def formatted(position: Floats) -> str:
 def checked(sizes: Any, positions: Floats) -> Floats:
     """Return the lengths that a size function returned for positions, all above 0."""
     given = np.asarray(sizes)
-    if given.dtype.kind not in "iuf":
-        raise DtypeError(f"size must return real numbers, got dtype {given.dtype}")
+    require_real(given, "what size returns")
     found = given.astype(np.float64)
     if found.ndim == 0:
         found = np.full(len(positions), float(found))
@@ -67,20 +59,14 @@ def checked(sizes: Any, positions: Floats) -> Floats:
 
 def chosen(marked: ArrayLike, count: int, nouns: str) -> NDArray[np.intp]:
     """Return the numbers of marked simplices, given as a mask or as numbers."""
-    array = as_plain_array(marked, "marked")
-    if array.dtype.kind == "b":
-        if array.shape != (count,):
-            raise ShapeError(f"marked must have shape ({count},), got {array.shape}")
-        return np.flatnonzero(array)
-    if array.size == 0:
-        return np.empty(0, dtype=np.intp)
-    if array.ndim != 1:
-        raise ShapeError(f"marked must be 1-D, got shape {array.shape}")
-    if array.dtype.kind not in "iu":
-        raise DtypeError(f"marked must be a mask or numbers of {nouns}, got dtype {array.dtype}")
-    if int(array.min()) < 0 or int(array.max()) >= count:
-        raise InputError(f"marked must be numbers of {nouns}, from 0 to {count - 1}")
-    return np.unique(array).astype(np.intp)
+    return np.flatnonzero(as_marks(marked, count, name="marked", of=nouns))
+
+
+def require_region(region: Any, known: set[int], name: str) -> None:
+    """Reject a size for a region that does not exist."""
+    if region not in known:
+        first = ", ".join(map(str, sorted(known)[:10]))
+        raise InputError(f"{name}: there is no region {region!r:.80}; the regions are {first}")
 
 
 def evaluator(size: Any, ndim: int = 2) -> Callable[[Floats], Floats]:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_flag, as_number, as_workers, require_finite
+from delone._base.arrays import as_flag, as_workers, require_finite
 from delone._base.georeference import warn_of_degrees
 from delone._base.immutable import own_copy, sealed
+from delone._base.numbers import as_between, as_nonnegative
 from delone._tiling.complex import Stored, points_alone
 from delone.alpha.shape import ConcaveHull
 from delone.delaunay import Delaunay
@@ -127,14 +127,8 @@ def _limit(max_edge: float | None, ratio: float | None) -> tuple[str, float]:
     if (max_edge is None) == (ratio is None):
         raise InputError("pass either max_edge, a length, or ratio, from 0 to 1")
     if ratio is not None:
-        share = as_number(ratio, name="ratio")
-        if not 0 <= share <= 1:
-            raise InputError(f"ratio must be from 0 to 1, got {ratio!r:.60}")
-        return "ratio", share
-    assert max_edge is not None
-    length = as_number(max_edge, name="max_edge")
-    if math.isnan(length) or length < 0:
-        raise InputError(f"max_edge is a length and must be at least 0, got {max_edge!r:.60}")
+        return "ratio", as_between(ratio, 0, 1, name="ratio")
+    length = as_nonnegative(max_edge, name="max_edge")
     return "length", length
 
 

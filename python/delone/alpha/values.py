@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_count
+from delone._base.arrays import as_index
 from delone._base.duplicates import first_rows
 from delone._base.immutable import sealed
 from delone._tiling.dimension import FLAT_OR_SOLID
@@ -238,9 +238,7 @@ def of_periodic(mesh: PeriodicDelaunay, workers: int) -> Valued:
 
 def simplices_of(valued: Valued, k: int, ndim: int) -> tuple[Indices, Floats]:
     """Return the simplices of one dimension, up to that of the points, and their values."""
-    at = as_count(k, name="k")
-    if at > ndim:
-        raise InputError(f"k must be from 0 to {ndim}, got {k!r:.60}")
+    at = as_index(k, 0, ndim, name="k")
     if at < len(valued.simplices):
         return valued.simplices[at], valued.values[at]
     return sealed(np.empty((0, at + 1), dtype=np.int32)), sealed(np.empty(0))

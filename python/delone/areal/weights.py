@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_number, as_plain_array, as_workers
+from delone._base.arrays import as_plain_array, as_workers, wrong_shape
 from delone._base.counting import agreed, counted
 from delone._base.immutable import sealed
+from delone._base.numbers import as_between
+from delone._base.values import require_real
 from delone.areal.paired import Paired, row_sums
 from delone.errors import DtypeError, InputError, ShapeError
 
@@ -191,9 +193,7 @@ class AreaWeights(Paired):
         >>> overlaps.to_weights("normalized").apply(field, skipna=True, min_fraction=0.6)
         array([[nan]])
         """
-        least = as_number(min_fraction, name="min_fraction")
-        if not 0 <= least <= 1:
-            raise InputError(f"min_fraction must be from 0 to 1, got {min_fraction!r:.60}")
+        least = as_between(min_fraction, 0, 1, name="min_fraction")
         given, lead, shape = self._flat(values)
         found: NDArray[Any]
         if self._method == "majority":
@@ -219,8 +219,7 @@ class AreaWeights(Paired):
     def _flat(self, values: ArrayLike) -> tuple[NDArray[Any], tuple[int, ...], tuple[int, ...]]:
         """Return a field as (fields, nsource), its leading axes, and the shape of the result."""
         array = as_plain_array(values, "values")
-        if array.dtype.kind not in "iufb":
-            raise DtypeError(f"values must be real numbers, got {array.dtype}")
+        require_real(array, "values", kinds="iufb")
         count = len(self.source_fractions)
         source, target = self._shapes
         axes = len(source)
@@ -341,7 +340,7 @@ def as_mask(mask: ArrayLike | None, shape: tuple[int, ...], name: str) -> Bools 
         raise DtypeError(f"{name} must be boolean or 0 and 1, got {array.dtype}")
     count = int(np.prod(shape))
     if array.shape not in {shape, (count,)}:
-        raise ShapeError(f"{name} must have shape {shape} or ({count},), got {array.shape}")
+        raise wrong_shape(name, f"{shape} or ({count},)", array)
     if array.dtype.kind != "b" and not np.isin(array, (0, 1)).all():
         raise InputError(f"{name} must be boolean or 0 and 1")
     return array.ravel().astype(bool)

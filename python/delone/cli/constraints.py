@@ -99,13 +99,16 @@ def triangulated(
     except CrossingSegmentsError as error:
         raise Failure(f"{survey.source}: {_crossing(error)}", Exit.DEGENERATE) from error
     except NonFiniteError as error:
-        first = ", ".join(map(str, error.rows.tolist())) + (", ..." if error.count > 10 else "")
-        raise Failure(
-            f"{survey.source}: NaN or infinity in features {first}", Exit.DEGENERATE
-        ) from error
+        raise not_finite(survey, error) from error
     if not mesh.nsimplex:
         raise Failure(f"{survey.source}: no line or ring encloses an area", Exit.DEGENERATE)
     return mesh, survey.z_of(mesh)
+
+
+def not_finite(survey: GeometrySet, error: NonFiniteError) -> Failure:
+    """Return the error for features with NaN or infinity."""
+    first = ", ".join(map(str, error.rows.tolist())) + (", ..." if error.count > 10 else "")
+    return Failure(f"{survey.source}: NaN or infinity in features {first}", Exit.DEGENERATE)
 
 
 def _crossing(error: CrossingSegmentsError) -> str:

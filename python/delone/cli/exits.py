@@ -105,6 +105,12 @@ def protect_inputs(outputs: Iterable[Path], *inputs: Path) -> None:
         written.add(real)
 
 
+def require_suffix(path: Path, suffixes: Iterable[str], what: str) -> None:
+    """Reject a file whose name does not end with a suffix for what is written."""
+    if path.suffix.lower() not in suffixes:
+        raise Failure(f"{path}: {what} can only be written to {' '.join(suffixes)}", Exit.USAGE)
+
+
 def code_of(error: BaseException) -> Exit:
     """Return the exit code of an error that is not about a file; an unexpected error is a bug."""
     codes: tuple[tuple[type[BaseException], Exit], ...] = (

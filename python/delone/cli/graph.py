@@ -14,7 +14,7 @@ from delone import __version__, graphs
 from delone._base.atomic import check_target, replacing
 from delone._base.counting import counted
 from delone._base.extras import require
-from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
+from delone.cli.exits import Exit, Failure, protect_inputs, reading, require_suffix, writing
 from delone.cli.notes import note
 from delone.cli.options import (
     Classes,
@@ -238,8 +238,7 @@ def _options(given: dict[str, Any], workers: int | None) -> dict[str, Any]:
 def _ready(path: Path) -> None:
     """Check that a file can be written before any work is done."""
     suffix = path.suffix.lower()
-    if suffix not in _SUFFIXES:
-        raise Failure(f"{path}: edges can only be written to {' '.join(_SUFFIXES)}", Exit.USAGE)
+    require_suffix(path, _SUFFIXES, "edges")
     if suffix not in (".csv", ".npz"):
         require("geopandas", extra="geo", what="writing edges")
     if suffix == ".parquet":

@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from delone import Mesh, __version__, mesh
+from delone.cli.constraints import not_finite
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.options import Chord, Json, Layer, MeshOutput, Order, Quiet
 from delone.cli.outputs import ready, write_all
@@ -118,10 +119,7 @@ def _meshed(survey: GeometrySet, options: dict[str, Any], tell: Any) -> Mesh:
     except CrossingSegmentsError as error:
         raise Failure(f"{survey.source}: {error}", Exit.DEGENERATE) from error
     except NonFiniteError as error:
-        first = ", ".join(map(str, error.rows.tolist()))
-        raise Failure(
-            f"{survey.source}: NaN or infinity in features {first}", Exit.DEGENERATE
-        ) from error
+        raise not_finite(survey, error) from error
 
 
 def _figures(found: Mesh) -> dict[str, Any]:

@@ -14,7 +14,7 @@ import typer
 from delone import __version__, datasets, sphere
 from delone._base.atomic import check_target, replacing
 from delone._base.extras import require
-from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
+from delone.cli.exits import Exit, Failure, protect_inputs, reading, require_suffix, writing
 from delone.cli.notes import note
 from delone.cli.options import Json, Quiet, Workers, outputs, split
 from delone.cli.report import Stopwatch
@@ -215,8 +215,7 @@ def _options() -> Iterator[None]:
 
 
 def _require_suffix(path: Path, known: tuple[str, ...]) -> None:
-    if path.suffix.lower() not in known:
-        raise Failure(f"{path}: this can only be written to {' '.join(known)}", Exit.USAGE)
+    require_suffix(path, known, "this")
     if path.suffix.lower() in _IMAGES:
         require("matplotlib", extra="plot", what="drawing")
 

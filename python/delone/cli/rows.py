@@ -13,7 +13,7 @@ import numpy as np
 from delone._base.atomic import check_target
 from delone._base.counting import counted
 from delone._base.extras import require
-from delone.cli.exits import Exit, Failure
+from delone.cli.exits import require_suffix
 from delone.cli.options import class_numbers, split
 from delone.cli.referenced import referenced
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
@@ -53,8 +53,7 @@ def read_rows(
 
 def ready_rows(path: Path, what: str) -> None:
     """Check that rows of `what` can be written to a file before any work is done."""
-    if path.suffix.lower() not in ROW_SUFFIXES:
-        raise Failure(f"{path}: {what} can only be written to {' '.join(ROW_SUFFIXES)}", Exit.USAGE)
+    require_suffix(path, ROW_SUFFIXES, what)
     if path.suffix.lower() == ".csv":
         check_target(path)
     else:

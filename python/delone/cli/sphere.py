@@ -14,7 +14,7 @@ from delone import __version__, datasets, sphere
 from delone._base.atomic import check_target
 from delone._base.extras import require
 from delone._base.georeference import is_geographic
-from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
+from delone.cli.exits import Exit, Failure, protect_inputs, reading, require_suffix, writing
 from delone.cli.notes import note
 from delone.cli.options import (
     Classes,
@@ -131,7 +131,7 @@ def _view(text: str | None) -> tuple[float, float] | None:
     except ValueError:
         lon = lat = math.nan
     if not (math.isfinite(lon) and abs(lat) <= 90):
-        raise Failure(f"--view must be a longitude and a latitude, got {text!r:.80}", Exit.USAGE)
+        raise Failure(f"--view takes a longitude and a latitude; got {text!r:.80}", Exit.USAGE)
     return lon, lat
 
 
@@ -141,11 +141,7 @@ def _ready(path: Path, center: tuple[float, float] | None) -> Callable[..., None
         figures = require("matplotlib.figure", extra="plot", what="drawing")
         check_target(path)
         return partial(_draw, figures=figures, center=center)
-    if suffix not in _SUFFIXES:
-        raise Failure(
-            f"{path}: the sphere can only be written to {' '.join(_SUFFIXES + _IMAGES)}",
-            Exit.USAGE,
-        )
+    require_suffix(path, _SUFFIXES + _IMAGES, "the sphere")
     write = writer(path, surface=True)
     check_target(path)
     return write

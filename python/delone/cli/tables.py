@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from delone._base.atomic import check_target
 from delone._base.extras import require
-from delone.cli.exits import Exit, Failure
+from delone.cli.exits import require_suffix
 from delone.cli.notes import note
 from delone.errors import FileFormatError
 from delone.io.vector import write_layer
@@ -37,9 +37,7 @@ def ready_table(path: Path, what: str, *, also: str = "") -> None:
 
     `also` is a suffix that the caller writes.
     """
-    if path.suffix.lower() not in TABLE_SUFFIXES:
-        suffixes = " ".join([also] * bool(also) + [*TABLE_SUFFIXES])
-        raise Failure(f"{path}: {what} can only be written to {suffixes}", Exit.USAGE)
+    require_suffix(path, [*[also] * bool(also), *TABLE_SUFFIXES], what)
     require("geopandas", extra="geo", what=f"writing {what}")
     if path.suffix.lower() == ".parquet":
         require("pyarrow.parquet", extra="geo", what="writing Parquet files")

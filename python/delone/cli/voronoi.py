@@ -138,7 +138,7 @@ def _outline(clip: str, crs: str | None) -> Any:
     found = read_geometries(clip)
     geometries = found.geometries[~shapely.is_missing(found.geometries)]
     if not len(geometries) or not np.isin(shapely.get_type_id(geometries), _AREAS).all():
-        raise FileFormatError(f"{clip} must contain only polygons")
+        raise FileFormatError(f"{clip} contains something other than polygons")
     if crs is not None and found.crs is not None and not _same_system(found.crs, crs):
         raise FileFormatError(
             f"{clip} is in {found.crs}, but the sites are in {crs}: transform one of them"

@@ -8,7 +8,8 @@ import numpy as np
 
 from delone import _core
 from delone._base.arrays import as_least, as_workers
-from delone.cluster.estimator import Clusterer, as_reach, numbered
+from delone._base.numbers import as_nonnegative
+from delone.cluster.estimator import Clusterer, numbered
 from delone.graphs.scale import rescaled
 
 if TYPE_CHECKING:
@@ -93,7 +94,7 @@ class DBSCAN(Clusterer):
         self.planar = planar
 
     def _cluster(self, given: ArrayLike) -> None:
-        eps = as_reach(self.eps, name="eps")
+        eps = as_nonnegative(self.eps, name="eps")
         samples = as_least(self.min_samples, 1, name="min_samples")
         workers = as_workers(self.workers)
         points = self._points(given)

@@ -7,21 +7,17 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._base.arrays import (
-    as_number,
-    as_plain_array,
-    require_finite,
-)
+from delone._base.arrays import as_plain_array, as_text, require_finite
 from delone._base.georeference import crs_of, warn_of_degrees
 from delone._base.immutable import own_copy
-from delone.errors import DtypeError, InputError, ShapeError
+from delone.errors import InputError, ShapeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone._base.types import Floats, Indices
 
-__all__ = ["Clusterer", "as_reach", "numbered"]
+__all__ = ["Clusterer", "numbered"]
 
 _METRICS = ("euclidean", "l2")
 
@@ -186,9 +182,7 @@ class Clusterer:
 
     def _points(self, points: Any) -> Floats:
         """Return finite 2-D or 3-D points unchanged, after checking the metric."""
-        if not isinstance(self.metric, str):
-            raise DtypeError(f"metric must be a string, got {self.metric!r:.60}")
-        if self.metric not in _METRICS:
+        if as_text(self.metric, name="metric") not in _METRICS:
             raise InputError(
                 f"metric {self.metric!r:.80} is not available: distances are Euclidean, and exact; "
                 "project longitudes and latitudes, or use scikit-learn for other metrics"
@@ -211,14 +205,6 @@ class Clusterer:
         elif hasattr(self, "feature_names_in_"):
             del self.feature_names_in_
         return own
-
-
-def as_reach(value: float, *, name: str) -> float:
-    """Return a distance of at least 0, which may be infinite."""
-    number = as_number(value, name=name)
-    if not number >= 0:
-        raise InputError(f"{name} must be a number of at least 0, got {value}")
-    return number
 
 
 def numbered(clusters: NDArray[np.integer[Any]]) -> Indices:

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone._base.arrays import as_choice, as_flag, as_least, as_workers
+from delone._base.numbers import as_nonnegative
 from delone.cluster.condensed import binary, condensed_tree
-from delone.cluster.estimator import Clusterer, as_reach, numbered
+from delone.cluster.estimator import Clusterer, numbered
 from delone.cluster.selection import labeled, memberships, selected
 from delone.errors import InputError
 
@@ -130,7 +131,7 @@ class HDBSCAN(Clusterer):
         largest = None
         if self.max_cluster_size is not None:
             largest = as_least(self.max_cluster_size, 1, name="max_cluster_size")
-        epsilon = as_reach(self.cluster_selection_epsilon, name="cluster_selection_epsilon")
+        epsilon = as_nonnegative(self.cluster_selection_epsilon, name="cluster_selection_epsilon")
         methods = ("eom", "leaf")
         name = "cluster_selection_method"
         method = as_choice(self.cluster_selection_method, methods, name=name)

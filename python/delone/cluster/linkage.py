@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_count, as_number, as_workers
+from delone._base.arrays import as_count, as_workers
 from delone._base.counting import counted
 from delone._base.immutable import Immutable, kept, sealed
+from delone._base.numbers import as_nonnegative
 from delone.errors import InputError
 from delone.graphs import Graph, minimum_spanning_tree
 
@@ -129,9 +130,7 @@ class SingleLinkage(Immutable):
         if (height is None) == (n_clusters is None):
             raise InputError("labels needs one of height= and n_clusters=")
         if height is not None:
-            limit = as_number(height, name="height")
-            if not limit >= 0:
-                raise InputError(f"height must be a number of at least 0, got {height}")
+            limit = as_nonnegative(height, name="height")
             return self._tree.prune(max_length=limit).components()
         wanted = as_count(0 if n_clusters is None else n_clusters, name="n_clusters")
         n = self.npoints

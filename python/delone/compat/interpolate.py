@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import delaunay
+from delone._base.arrays import wrong_shape
 from delone._base.extras import require
 from delone._base.masks import is_masked
 from delone._tiling.higher.dimension import MOST
@@ -598,5 +599,5 @@ def _queries(args: tuple[Any, ...], ndim: int) -> Floats:
     if xi.ndim == 1 and xi.size % ndim == 0:
         return xi.reshape(-1, ndim)
     if xi.ndim == 0 or xi.shape[-1] != ndim:
-        raise ShapeError(f"queries must have shape (..., {ndim}), got {xi.shape}")
+        raise wrong_shape("queries", f"(..., {ndim})", xi)
     return np.ascontiguousarray(xi)

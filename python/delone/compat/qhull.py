@@ -133,8 +133,7 @@ class Incremental:
             raise RuntimeError("points can only be added with incremental=True, and before close()")
         ndim = self._points.shape[1]
         more = as_low_points(points, self._most, like=ndim)
-        if more.shape[1] != ndim:
-            raise ShapeError(f"points must have {ndim} coordinates, got shape {more.shape}")
+        _require_coordinates(more, ndim)
         self._append(more)
 
     def _append(self, more: Floats) -> None:
@@ -250,11 +249,15 @@ def unmasked(array: NDArray[Any]) -> NDArray[Any]:
     return found
 
 
+def _require_coordinates(points: NDArray[Any], ndim: int) -> None:
+    if points.shape[-1] != ndim:
+        raise ShapeError(f"points must have {ndim} coordinates, got shape {points.shape}")
+
+
 def as_queries(xi: ArrayLike, ndim: int) -> Floats:
     """Convert query points, (..., ndim), as SciPy does if that is exact."""
     array = unmasked(np.asanyarray(xi))
     if array.ndim == 0:
         raise IndexError("points to locate need a last axis of coordinates, got a single value")
-    if array.shape[-1] != ndim:
-        raise ShapeError(f"points must have {ndim} coordinates, got shape {array.shape}")
+    _require_coordinates(array, ndim)
     return unboxed(array) if array.dtype.kind in "bO" else as_vectors(array, ndim, name="xi")

@@ -11,7 +11,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from delone.errors import DtypeError, InputError
+from delone._base.arrays import as_text
+from delone.errors import InputError
 
 __all__ = ["DELAUNAY", "HALFSPACES", "HULL", "VORONOI", "QhullOptionError", "QhullOptions"]
 
@@ -68,9 +69,7 @@ class QhullOptions:
         """
         if options is None:
             options = "Qc Q12" if incremental else "Qbb Qc Qz Q12"
-        if not isinstance(options, str):
-            raise DtypeError(f"qhull_options must be a string, got {type(options).__name__}")
-        given = options.split()
+        given = as_text(options, name="qhull_options").split()
         for option in given:
             _check(option, incremental, what)
         if {*_OF_SITES} <= {*given}:

@@ -36,8 +36,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_plain_array
+from delone._base.arrays import as_plain_array, wrong_shape
 from delone._base.masks import is_masked
+from delone._base.values import require_real, require_shape
 from delone._tiling.higher.dimension import MOST
 from delone._tiling.higher.rational import kernel
 from delone.compat.qhull import DimensionError, QhullError, read_options
@@ -142,10 +143,7 @@ class HalfspaceIntersection:
         self._text = text
         rows = _as_rows(halfspaces)
         point = _as_doubles(interior_point, "interior_point")
-        if point.shape != (rows.shape[1] - 1,):
-            raise ShapeError(
-                f"interior_point must have shape ({rows.shape[1] - 1},), got {point.shape}"
-            )
+        require_shape(point, (rows.shape[1] - 1,), "interior_point")
         self.interior_point = point
         self._set(rows)
 
@@ -247,7 +245,7 @@ class HalfspaceIntersection:
             raise RuntimeError("incremental mode is not enabled, or already closed")
         more = _as_rows(np.atleast_2d(np.asanyarray(halfspaces)))
         if more.shape[1] != self.ndim + 1:
-            raise ShapeError(f"halfspaces must have shape (k, {self.ndim + 1}), got {more.shape}")
+            raise wrong_shape("halfspaces", f"(k, {self.ndim + 1})", more)
         rows = np.concatenate((self.halfspaces, more))
         # Redundant half-spaces remain redundant.
         self._set(rows, np.concatenate((self.dual_vertices, np.arange(self.nineq, len(rows)))))
@@ -284,8 +282,7 @@ def _as_doubles(values: ArrayLike, name: str) -> Floats:
     if is_masked(values):
         raise DtypeError(f"{name} must not be a masked array")
     given = as_plain_array(values, name)
-    if given.dtype.kind not in "biufO":
-        raise DtypeError(f"{name} must contain real numbers, got dtype {given.dtype}")
+    require_real(given, name, kinds="biufO")
     try:
         return np.array(given, dtype=np.float64, order="C")
     except (TypeError, ValueError, OverflowError) as error:

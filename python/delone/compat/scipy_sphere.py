@@ -36,6 +36,7 @@ __all__ = ["SphericalVoronoi"]
 # Between generators that are closer, rounded vertices are too coarse for areas: they have relative
 # errors of about 1e-16 divided by this distance.
 _CLOSE = 1e-3
+_DUPLICATES = "Duplicate generators present."
 
 
 class SphericalVoronoi:
@@ -125,7 +126,7 @@ class SphericalVoronoi:
         workers = as_workers(None)
         mesh = _core.sphere_delaunay(self._vectors, workers)
         if len(mesh.duplicates):
-            raise ValueError("Duplicate generators present.")
+            raise ValueError(_DUPLICATES)
         self._dual = _core.sphere_dual(
             self._vectors, mesh.simplices, mesh.neighbors, False, workers
         )
@@ -145,7 +146,7 @@ class SphericalVoronoi:
         # Between the two generators of each ridge.
         self._squares: Floats = (steps * steps).sum(axis=0)
         if self._squares.min() <= tolerance**2:
-            raise ValueError("Duplicate generators present.")
+            raise ValueError(_DUPLICATES)
 
     @property
     def _simplices(self) -> NDArray[np.int32]:

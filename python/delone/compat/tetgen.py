@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._base.arrays import as_count, as_flag, as_number, as_plain_array, as_points
+from delone._base.arrays import as_count, as_flag, as_plain_array, as_points, wrong_shape
 from delone._base.atomic import replacing
+from delone._base.numbers import as_nonnegative
 from delone._tiling.space.locking import cells, sides
 from delone.compat.tetgen_sizes import background
 from delone.compat.tetgen_switches import Wishes, of_arguments, of_switches
-from delone.errors import DtypeError, FileFormatError, InputError, ShapeError
+from delone.errors import DtypeError, FileFormatError, InputError
 from delone.exchange.parts import Parts
 from delone.exchange.pyvista import to_pyvista
 from delone.exchange.second import of_order
@@ -133,9 +134,7 @@ class TetGen:
         --------
         See `TetGen`.
         """
-        volume = as_number(max_vol, name="max_vol")
-        if not volume >= 0:
-            raise InputError(f"max_vol must be at least 0, got {max_vol!r:.80}")
+        volume = as_nonnegative(max_vol, name="max_vol")
         label = as_count(id, name="id")
         self._regions.append((label, _place(point_in_region)))
         if volume:
@@ -493,7 +492,7 @@ class TetGen:
 def _place(point: ArrayLike) -> Floats:
     array = as_plain_array(point, "point")
     if array.shape != (3,):
-        raise ShapeError(f"a point must have shape (3,), got {array.shape}")
+        raise wrong_shape("a point", "(3,)", array)
     found: Floats = as_points(array[None], ndim=3, name="point")[0]
     return found
 

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections import abc
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone import _core
 from delone._base.arrays import LARGEST_LIMIT, as_points, as_segments
+from delone._base.values import as_labels, require_mapping
 from delone._tiling.plane import topology
 from delone.compat.triangle_input import (
     Given,
@@ -30,7 +30,7 @@ from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
 from delone.refine.meshed import Mesh
-from delone.refine.refine import as_rows, filled
+from delone.refine.refine import filled
 from delone.refine.rounds import MOST_ADDED, Limits, as_min_angle
 
 if TYPE_CHECKING:
@@ -136,8 +136,7 @@ def triangulate(tri: Mapping[str, Any], opts: str = "") -> dict[str, Any]:
     delone.errors.InputError: switch u is not supported: a test of triangles in C that is compiled \
 into Triangle; use size= of delone.mesh
     """
-    if not isinstance(tri, abc.Mapping):
-        raise DtypeError(f"tri must be a mapping of names to arrays, got {tri!r:.60}")
+    require_mapping(tri, "tri")
     if not isinstance(opts, str):
         raise DtypeError(f"opts must be a string of switches, got {opts!r:.60}")
     switches = _parsed(opts)
@@ -232,7 +231,7 @@ def _output(
     boundary = number[found.boundary]
     markers = np.zeros(n, dtype=np.int32)
     if tri.get("vertex_markers") is not None:
-        given = as_rows(tri["vertex_markers"], len(points), "vertex_markers")
+        given = as_labels(tri["vertex_markers"], len(points), name="vertex_markers")
         markers[: min(n, len(points))] = given if "j" not in switches.on else 0
     markers[number] = found.point_markers
     on_boundary = np.zeros(n, dtype=bool)

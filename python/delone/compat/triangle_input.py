@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_segments, as_simplices
+from delone._base.arrays import as_segments, as_simplices, wrong_shape
 from delone._base.counting import counted, listed
 from delone._base.duplicates import first_rows
+from delone._base.values import as_labels
 from delone._tiling.plane import topology
 from delone.errors import InputError, ShapeError
 from delone.refine import domains
 from delone.refine.domains import Domain, Lines
 from delone.refine.meshed import Mesh
-from delone.refine.refine import as_rows
 from delone.refine.rounds import MOST_ADDED, as_min_angle
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ def rows_of(values: Any, columns: int | None, name: str, count: int | None = Non
     if array.ndim == 1:
         array = array[:, None] if columns is None else array.reshape(-1, columns)
     if array.ndim != 2 or (columns is not None and len(array) and array.shape[1] != columns):
-        raise ShapeError(f"{name} must have shape (k, {columns or 'c'}), got {array.shape}")
+        raise wrong_shape(name, f"(k, {columns or 'c'})", array)
     if count is not None and len(array) != count:
         raise ShapeError(f"{name} must have {count} rows, got {len(array)}")
     return array
@@ -162,7 +162,7 @@ def _homes_of(found: Mesh, base: Given) -> Rows:
 def _domain(tri: Mapping[str, Any], base: Given, given: Indices, switches: Switches) -> Domain:
     """The given triangles, made Delaunay between segments and boundary; regions are their parts."""
     points, simplices, neighbors = base.points, base.simplices, base.neighbors
-    markers = as_rows(tri.get("segment_markers"), len(given), "segment_markers")
+    markers = as_labels(tri.get("segment_markers"), len(given), name="segment_markers")
     rim = topology.boundary_edges(simplices, neighbors)
     n = len(points)
     rim_keys = keys_of(rim, n)
@@ -186,7 +186,7 @@ def _domain(tri: Mapping[str, Any], base: Given, given: Indices, switches: Switc
         marks,
         np.full(len(ends), -1, dtype=np.int32),
     )
-    of_points = as_rows(tri.get("vertex_markers"), n, "vertex_markers")
+    of_points = as_labels(tri.get("vertex_markers"), n, name="vertex_markers")
     return Domain(
         points=points,
         point_source=np.arange(n, dtype=np.int32),

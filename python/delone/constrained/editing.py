@@ -13,16 +13,23 @@ with many changes, and `Dynamic`.
 from __future__ import annotations
 
 import operator
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
 
-from delone._base.arrays import as_points, as_segments, require_finite
+from delone._base.arrays import (
+    as_points,
+    as_segments,
+    require_finite,
+    require_integers,
+    wrong_shape,
+)
 from delone._base.counting import agreed, counted
 from delone._base.duplicates import first_rows
 from delone._tiling.plane.topology import among, edge_keys
 from delone.constrained.segmented import Origin, Segmented
-from delone.errors import DeloneError, DtypeError, InputError, ShapeError
+from delone.errors import DeloneError, DtypeError, InputError
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -371,22 +378,19 @@ class Editing(Generic[M]):
 
 
 def _row(row: int) -> int:
-    if isinstance(row, bool | np.bool_):
-        raise DtypeError(f"a row must be an integer, got {row}")
-    try:
-        return operator.index(row)
-    except TypeError:
-        raise DtypeError(f"a row must be an integer, got {row!r:.80}") from None
+    if not isinstance(row, bool | np.bool_):
+        with suppress(TypeError):
+            return operator.index(row)
+    raise DtypeError(f"a row must be an integer, got {row!r:.80}")
 
 
 def _rows(rows: ArrayLike, count: int, name: str) -> NDArray[np.int64]:
     array = np.asarray(rows)
     if array.ndim > 1:
-        raise ShapeError(f"rows of {name} must have shape (k,), got {array.shape}")
+        raise wrong_shape(f"rows of {name}", "(k,)", array)
     if array.size == 0:
         return np.empty(0, dtype=np.int64)
-    if array.dtype.kind not in "iu":
-        raise DtypeError(f"rows of {name} must be integers, got dtype {array.dtype}")
+    require_integers(array, f"rows of {name}")
     wrong = (array < 0) | (array >= count)
     if wrong.any():
         first = ", ".join(map(str, array[wrong][:10].tolist()))

@@ -131,7 +131,7 @@ def _batches(given: Any, name: str) -> Iterator[Any]:
     elif isinstance(given, str | bytes | os.PathLike):
         raise InputError(_string_error(given, name))
     elif not hasattr(given, "__iter__"):
-        raise InputError(f"{name}: {given!r:.80} is not a geometry")
+        raise _no_geometry(given, name)
     else:
         refuse_masks(given, name)
         rings = rings_of_numbers(given, name)
@@ -284,6 +284,10 @@ def _of_runs(runs: Iterable[tuple[Floats, int]]) -> Parts:
     return _closed(np.concatenate(rows), part, np.array(kinds, dtype=np.int64), none)
 
 
+def _no_geometry(given: object, name: str) -> InputError:
+    return InputError(f"{name}: {given!r:.80} is not a geometry")
+
+
 def _of_mapping(mapping: Mapping[str, Any], name: str) -> Iterator[tuple[Floats, int]]:
     """Split a mapping in GeoJSON form into runs of coordinates, and the kind of each."""
     kind = mapping.get("type")
@@ -294,7 +298,7 @@ def _of_mapping(mapping: Mapping[str, Any], name: str) -> Iterator[tuple[Floats,
         return
     coordinates: Any = mapping.get("coordinates")
     if coordinates is None or not isinstance(kind, str):
-        raise InputError(f"{name}: {dict(mapping)!r:.80} is not a geometry")
+        raise _no_geometry(dict(mapping), name)
     if kind in ("Point", "MultiPoint"):
         for point in [coordinates] if kind == "Point" else coordinates:
             yield _run([point], kind), POINTS

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from delone._base.arrays import as_count
+from delone._base.files import not_a_path
 from delone.errors import DtypeError, InputError
 
 __all__ = ["as_classes", "as_names", "as_path"]
@@ -22,7 +23,7 @@ def as_path(path: Any, *, name: str) -> Path:
             raise InputError(f"{name} contains a null character: {text!r:.60}")
         # Otherwise ~ would be the name of a folder, which nobody wants.
         return Path(path).expanduser()
-    raise DtypeError(f"{name} must be a string or a path-like object, got {path!r:.60}")
+    raise not_a_path(path, name)
 
 
 def as_names(names: Any, *, name: str, places: bool = False) -> tuple[Any, ...]:

@@ -9,11 +9,12 @@ import numpy as np
 from delone._base.arrays import as_plain_array, as_points, as_queries
 from delone._base.immutable import own_copy
 from delone._base.masks import refuse_hidden
+from delone._base.values import refuse_rounded, require_real
 from delone._tiling.complex import Stored
 from delone.constrained import ConstrainedDelaunay
 from delone.delaunay import Delaunay
 from delone.dynamic.segments import FEW
-from delone.errors import DtypeError, InputError, ShapeError
+from delone.errors import InputError, ShapeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -62,18 +63,10 @@ def as_any_values(values: ArrayLike) -> NDArray[Any]:
 def as_values(values: ArrayLike) -> NDArray[Any]:
     """Return values to interpolate as doubles or complex numbers, without rounding."""
     array = as_any_values(values)
-    if array.size and array.dtype.kind not in "iufc":
-        raise DtypeError(f"values must contain numbers, got dtype {array.dtype}")
+    if array.size:
+        require_real(array, "values", kinds="iufc")
     if array.dtype in (np.float64, np.complex128):
         return array
     plain = array.astype(np.complex128 if array.dtype.kind == "c" else np.float64)
-    if array.dtype.kind in "iu" and array.size:
-        wrong = (array > _LARGEST_EXACT_INTEGER) | (array < -_LARGEST_EXACT_INTEGER)
-    else:
-        wrong = (array != plain) & ~np.isnan(plain)
-    if wrong.any():
-        row = int(np.argwhere(np.atleast_1d(wrong))[0, 0])
-        raise DtypeError(
-            f"values: row {row} has a number that float64 cannot represent; round it first"
-        )
+    refuse_rounded(array, plain, "values")
     return plain

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_plain_array, as_workers
+from delone._base.arrays import as_plain_array, as_workers, require_integers, wrong_shape
 from delone._base.immutable import sealed
 from delone.constrained import ConstrainedDelaunay
 from delone.dynamic import validation
@@ -256,7 +256,7 @@ def as_handles(handles: ArrayLike, name: str = "handles") -> Handles:
             return np.array(handles, dtype=np.int64)
     array = _as_integers(handles, name)
     if array.size and array.ndim != 1:
-        raise ShapeError(f"{name} must have shape (k,), got {array.shape}")
+        raise wrong_shape(name, "(k,)", array)
     return array.reshape(-1)
 
 
@@ -264,7 +264,7 @@ def _as_ends(ends: ArrayLike) -> Handles:
     """Return pairs of handles as a contiguous array."""
     array = _as_integers(ends, "ends")
     if array.size and (array.ndim != 2 or array.shape[1] != 2):
-        raise ShapeError(f"ends must have shape (s, 2), got {array.shape}")
+        raise wrong_shape("ends", "(s, 2)", array)
     return array.reshape(-1, 2)
 
 
@@ -274,8 +274,7 @@ def _as_integers(handles: ArrayLike, name: str) -> Handles:
         raise ShapeError(f"{name} must be an array, got one number: {handles!r:.80}")
     if array.size == 0:
         return np.empty(0, dtype=np.int64)
-    if array.dtype.kind not in "iu":
-        raise DtypeError(f"{name} must be integers, got dtype {array.dtype}")
+    require_integers(array, name)
     if array.dtype.kind == "u" and int(array.max()) >= 2**63:
         raise DtypeError(f"{name} must be below 2**63")
     if len(array) > FEW:

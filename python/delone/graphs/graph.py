@@ -7,19 +7,14 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import (
-    as_choice,
-    as_flag,
-    as_number,
-    as_plain_array,
-    as_segments,
-    require_finite,
-)
+from delone._base.arrays import as_choice, as_flag, as_segments, as_text, require_finite
 from delone._base.counting import counted, listed
 from delone._base.duplicates import vertices_of
 from delone._base.immutable import kept, own_copy, sealed
+from delone._base.numbers import as_nonnegative, as_share
+from delone._base.values import as_marks
 from delone._tiling.complex import Exchanged, Stored
-from delone.errors import DtypeError, InputError, ShapeError
+from delone.errors import InputError
 from delone.graphs.coincident import clique, repeated
 from delone.graphs.lengths import lengths_of, lowest, squares, up_to
 
@@ -104,8 +99,7 @@ class Graph(Stored, Exchanged):
     ) -> None:
         own, one_way = own_copy(points, ndim=None), as_flag(directed, name="directed")
         require_finite(own)
-        if not isinstance(kind, str):
-            raise DtypeError(f"kind must be a string, got {kind!r:.60}")
+        as_text(kind, name="kind")
         pairs = as_segments(edges, len(own), name="edges")
         loops = np.flatnonzero(pairs[:, 0] == pairs[:, 1])
         if len(loops):
@@ -288,13 +282,9 @@ class Graph(Stored, Exchanged):
         if (max_length is None) == (percentile is None):
             raise InputError("prune needs one of max_length= and percentile=")
         if max_length is not None:
-            limit = as_number(max_length, name="max_length")
-            if not limit >= 0:
-                raise InputError(f"max_length must be a number of at least 0, got {max_length}")
+            limit = as_nonnegative(max_length, name="max_length")
             return self._with(up_to(self._points, self._edges, limit, self._workers))
-        share = as_number(0.0 if percentile is None else percentile, name="percentile")
-        if not 0 < share <= 100:
-            raise InputError(f"percentile must be above 0 and at most 100, got {percentile}")
+        share = as_share(percentile, name="percentile", most=100)
         return self._with(lowest(self._points, self._edges, self.lengths, share))
 
     def subgraph(self, rows: ArrayLike) -> Self:
@@ -580,24 +570,12 @@ def _ordered(pairs: Indices, directed: bool) -> Indices:
 
 def _as_rows(rows: ArrayLike, npoints: int) -> NDArray[np.int64]:
     """Return the rows of points to keep, each at most once."""
-    array = as_plain_array(rows, "rows")
+    marks = as_marks(rows, npoints, name="rows", of="points")
+    array = np.asarray(rows)
     if array.dtype.kind == "b":
-        if array.shape != (npoints,):
-            wanted = f"rows must have one boolean per point, ({npoints},)"
-            raise ShapeError(f"{wanted}, got {array.shape}")
-        return np.flatnonzero(array)
-    if array.shape == (0,):
-        return np.empty(0, dtype=np.int64)
-    if array.ndim != 1:
-        raise ShapeError(f"rows must have shape (k,), got {array.shape}")
-    if array.dtype.kind not in "iu":
-        raise DtypeError(f"rows must contain integers or booleans, got dtype {array.dtype}")
-    if int(array.min()) < 0 or int(array.max()) >= npoints:
-        raise InputError(
-            f"rows must be from 0 to {npoints - 1}, got {array.min()} to {array.max()}"
-        )
+        return np.flatnonzero(marks)
     found = array.astype(np.int64)
-    repeats = np.flatnonzero(np.bincount(found, minlength=npoints) > 1)
-    if len(repeats):
+    if np.count_nonzero(marks) < len(found):
+        repeats = np.flatnonzero(np.bincount(found) > 1)
         raise InputError(f"rows are given more than once: {listed(repeats, 10)}")
     return found

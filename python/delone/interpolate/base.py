@@ -16,10 +16,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
-from delone._base.arrays import as_choice, as_flag, as_number, as_queries, as_workers
+from delone._base.arrays import as_choice, as_flag, as_queries, as_workers
 from delone._base.counting import agreed
 from delone._base.georeference import crs_of, warn_of_degrees
 from delone._base.immutable import own_copy
+from delone._base.numbers import as_nonnegative
 from delone._base.renames import renamed
 from delone._tiling import location, measures
 from delone._tiling.higher.dimension import MOST
@@ -118,7 +119,7 @@ class Interpolator:
         planar: bool = False,
     ) -> None:
         self._extrapolate = as_choice(extrapolate, self.EXTRAPOLATE, name="extrapolate")
-        self._tolerance = location.as_tolerance(tolerance)
+        self._tolerance = as_nonnegative(tolerance, name="tolerance")
         self._duplicates = as_choice(duplicates, DUPLICATES, name="duplicates")
         self._nan = as_choice(nan, NAN, name="nan")
         self._workers = workers
@@ -759,9 +760,7 @@ def as_max_distance(max_distance: float | None) -> float | None:
     """Validate the largest distance from a site at which there are values; None for no limit."""
     if max_distance is None:
         return None
-    limit = as_number(max_distance, name="max_distance")
-    if not limit >= 0:
-        raise InputError(f"max_distance must be at least 0, got {max_distance!r:.80}")
+    limit = as_nonnegative(max_distance, name="max_distance")
     return limit
 
 

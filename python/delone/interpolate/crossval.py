@@ -276,12 +276,13 @@ def _share(
 
 
 def _dealer(seed: int) -> np.random.Generator:
+    wanted = f"seed must be an integer of at least 0, got {seed!r:.60}"
     try:
         return np.random.default_rng(seed)
     except TypeError:
-        raise DtypeError(f"seed must be an integer of at least 0, got {seed!r:.60}") from None
+        raise DtypeError(wanted) from None
     except ValueError:
-        raise InputError(f"seed must be an integer of at least 0, got {seed!r:.60}") from None
+        raise InputError(wanted) from None
 
 
 @dataclass(frozen=True, eq=False)

@@ -98,13 +98,15 @@ def places_of(data: Any, coords: Sequence[str] | None, targets: Sequence[Any] = 
     else:
         names = tuple(coords)
         if len(names) != 2 or not all(name in _variables(data) for name in names):
-            raise InputError(
-                f"found no coordinates {' and '.join(map(str, names))}; name two with coords="
-            )
+            raise _not_found(" and ".join(map(str, names)))
         pair = tuple(_variables(data)[name] for name in names)
     # Rows, columns: as values are stored.
     across, up = require("xarray", extra="xarray", what="coordinates").broadcast(*pair)
     return Places((pair[0], pair[1]), across, up, _shown(pair))
+
+
+def _not_found(wanted: str) -> InputError:
+    return InputError(f"found no coordinates {wanted}; name two with coords=")
 
 
 def _variables(data: Any) -> dict[Any, Any]:
@@ -125,7 +127,7 @@ def _found(data: Any, targets: Sequence[Any]) -> tuple[Any, Any]:
         pair = planar or angular
         if pair is None:
             wanted = ", or ".join(" and ".join(pair) for pair in chain(_PLANAR, _ANGULAR))
-            raise InputError(f"found no coordinates {wanted}; name two with coords=")
+            raise _not_found(wanted)
         return pair
     said = _said_by(targets)
     if said is None:

@@ -16,11 +16,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._base.arrays import as_callback, as_count, as_number, as_plain_array
+from delone._base.arrays import as_callback, as_count, as_number, as_plain_array, wrong_shape
 from delone._base.counting import gigabytes, grouped
 from delone._base.decimals import exact, multiples, outer, spacing
 from delone._base.renames import renamed
-from delone.errors import DtypeError, InputError, ShapeError
+from delone._base.values import require_real
+from delone.errors import InputError, ShapeError
 from delone.interpolate.base import Interpolator, as_max_distance
 from delone.interpolate.methods import interpolator
 from delone.interpolate.space import SPACE, refuse
@@ -369,11 +370,10 @@ def _bounded(bounds: Sequence[float]) -> tuple[list[float], list[float]]:
 
 def _ascending(nodes: ArrayLike, name: str) -> Floats:
     given = as_plain_array(nodes, name)
-    if given.dtype.kind not in "iuf":
-        raise DtypeError(f"{name} must hold real numbers, got dtype {given.dtype}")
+    require_real(given, name)
     array = given.astype(np.float64)
     if array.ndim != 1 or not len(array):
-        raise ShapeError(f"{name} must have shape (k,) with k of at least 1, got {array.shape}")
+        raise wrong_shape(name, "(k,) with k of at least 1", array)
     if not np.isfinite(array).all() or not (np.diff(array) > 0).all():
         raise InputError(f"{name} must be finite and ascending")
     return array

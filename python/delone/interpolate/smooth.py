@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_choice, as_limit, as_number, as_workers
-from delone.errors import InputError
+from delone._base.arrays import as_choice, as_limit, as_workers
+from delone._base.numbers import as_positive
 from delone.interpolate.base import Interpolator, Sheet, shaped_derivatives
 from delone.interpolate.hull import Terms, edge_terms
 from delone.interpolate.space import SPACE, refuse
@@ -54,10 +54,8 @@ class Smooth(Interpolator):
         **options: Any,
     ) -> None:
         self._estimate = as_choice(gradients, GRADIENTS, name="gradients")
-        self._tol = as_number(tol, name="tol")
+        self._tol = as_positive(tol, name="tol")
         self._maxiter = as_limit(max_iter, name="max_iter")
-        if not self._tol > 0:
-            raise InputError(f"tol must be above 0, got {tol}")
         super().__init__(points, values, **options)
 
     def hessian(self, xi: ArrayLike, *, values: ArrayLike | None = None) -> NDArray[Any]:

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._base.arrays import as_plain_array
+from delone._base.arrays import as_plain_array, wrong_shape
 from delone._base.counting import agreed, counted
 from delone._base.masks import refuse_hidden
-from delone.errors import ConflictingValuesError, DtypeError, InputError, NonFiniteError, ShapeError
+from delone._base.values import refuse_rounded, require_real
+from delone.errors import ConflictingValuesError, InputError, NonFiniteError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -170,13 +171,12 @@ def as_field(values: ArrayLike, count: int, *, name: str = "values") -> Field:
     """Convert values, (count, ...), to a field without rounding; NaN is allowed."""
     refuse_hidden(values, name)
     array = as_plain_array(values, name)
-    if array.dtype.kind not in "iufc":
-        raise DtypeError(f"{name} must hold numbers, got dtype {array.dtype}")
+    require_real(array, name, kinds="iufc")
     if array.ndim == 0 or len(array) != count:
-        raise ShapeError(f"{name} must have shape ({count},) or ({count}, ...), got {array.shape}")
+        raise wrong_shape(name, f"({count},) or ({count}, ...)", array)
     is_complex = array.dtype.kind == "c"
     plain = np.require(array, np.complex128 if is_complex else np.float64, ["C", "A"])
-    _refuse_rounded(array, plain, name)
+    refuse_rounded(array, plain, name)
     width = int(np.prod(array.shape[1:], dtype=np.int64))
     columns = plain.reshape(count, width)
     if is_complex:
@@ -218,20 +218,4 @@ def require_finite_values(field: Field) -> None:
             "choose nan='drop' or nan='propagate'",
             rows=rows[:10],
             count=len(rows),
-        )
-
-
-def _refuse_rounded(array: NDArray[Any], plain: NDArray[Any], name: str) -> None:
-    """Raise for integers and extended floats that doubles cannot represent."""
-    if array.dtype.kind in "iu" and array.dtype.itemsize >= 8:
-        with np.errstate(all="ignore"):
-            wrong = (array > _LARGEST_EXACT_INTEGER) | (array < -_LARGEST_EXACT_INTEGER)
-    elif array.dtype.kind in "fc" and array.dtype.itemsize > plain.dtype.itemsize:
-        wrong = (array != plain) & ~np.isnan(array)
-    else:
-        return
-    if wrong.any():
-        row = int(np.flatnonzero(wrong.reshape(len(array), -1).any(axis=1))[0])
-        raise DtypeError(
-            f"{name}: row {row} has a number that float64 cannot represent; round it first"
         )

@@ -18,6 +18,7 @@ import numpy as np
 
 from delone._base.arrays import as_points, as_simplices
 from delone._base.bounded import archived, read_array, require_claim
+from delone._base.files import unread
 from delone._base.values import as_values
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import FileFormatError, InputError
@@ -210,7 +211,7 @@ def _corrupt_is_an_error(source: str) -> Iterator[None]:
         reason = str(error).partition("\n")[0]
         if "allow_pickle" in reason or "Python objects" in reason:
             reason = "it contains Python objects, which are not loaded"
-        raise FileFormatError(f"{source} is truncated or not a NumPy file: {reason}") from error
+        raise unread(source, "NumPy", reason) from error
 
 
 def _from_table(
@@ -267,7 +268,7 @@ def _from_archive(
     if layer is not None or "points" in names:
         wanted = layer if layer is not None else "points"
         if wanted not in names:
-            raise FileFormatError(f"{source} has no array {wanted!r:.80}: {_listed(names)}")
+            raise _no_array(archive, wanted)
         others = attributes if attributes is None else ()
         survey = _from_table(_member(archive, wanted), columns, others, source)
         z = survey.z
@@ -327,12 +328,15 @@ def _listed(names: set[str]) -> str:
     return "its arrays are " + ", ".join(sorted(names)) if names else "it contains no arrays"
 
 
+def _no_array(archive: zipfile.ZipFile, name: str) -> FileFormatError:
+    found = _listed(_names(archive))
+    return FileFormatError(f"{archive.filename} has no array {name!r:.80}: {found}")
+
+
 def _member(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
     """Read one array, after comparing its header with the size of the member."""
     try:
         entry = archive.getinfo(f"{name}.npy")
     except KeyError:
-        raise FileFormatError(
-            f"{archive.filename} has no array {name!r:.80}: {_listed(_names(archive))}"
-        ) from None
+        raise _no_array(archive, name) from None
     return read_array(archive, entry, f"{archive.filename}: array {name!r}")

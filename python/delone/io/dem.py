@@ -18,8 +18,9 @@ import numpy as np
 from delone._base.arrays import as_least, as_number
 from delone._base.counting import counted
 from delone._base.extras import require
+from delone._base.files import reading_as, require_there
 from delone._base.georeference import caller_level
-from delone.errors import DeloneError, FileFormatError, InputError
+from delone.errors import FileFormatError, InputError
 from delone.io.companions import require_companion
 from delone.io.netcdf import Heights, is_netcdf, read_heights
 from delone.io.nodata import as_nodata, is_nodata, require_declared
@@ -149,11 +150,7 @@ def read_raster(
     box, empty_value = as_bounds(bounds), as_nodata(nodata)
     if is_netcdf(file):
         return _of_netcdf(file, band, step, box, empty_value, most)
-    if isinstance(band, str):
-        raise InputError(f"{file}: names of variables are for NetCDF; band is a number from 1 on")
-    wanted = None if band is None else as_least(band, 1, name="band")
-    with _opened(file) as raster:
-        number = _band(raster, wanted, file)
+    with _of_band(file, band) as (raster, number):
         window = _window(raster, box, step)
         _check_size(raster, number, window, most, file)
         points, z, empty = _cells(raster, number, window, box, empty_value)
@@ -161,7 +158,7 @@ def read_raster(
     check_system(crs, str(file))
     if not len(points):
         if box is not None and not empty:
-            raise InputError(f"{file}: no center of a cell is inside bounds={box}")
+            raise _outside(file, box)
         raise FileFormatError(f"{file}: no cell has a height")
     _tell_empty(file, empty)
     return PointSet(points=points, z=z, crs=crs, source=str(file))
@@ -183,16 +180,8 @@ def read_cells(
     step, box = as_least(step, 1, name="step"), as_bounds(bounds)
     empty = as_nodata(nodata)
     if is_netcdf(path):
-        if band is not None and not isinstance(band, str):
-            raise InputError(
-                f"{path}: band must be the name of a variable of NetCDF, got {band!r:.40}"
-            )
         return read_heights(path, band, step, box, empty, max_points)
-    if isinstance(band, str):
-        raise InputError(f"{path}: names of variables are for NetCDF; band is a number from 1 on")
-    wanted = None if band is None else as_least(band, 1, name="band")
-    with _opened(path) as raster:
-        number = _band(raster, wanted, path)
+    with _of_band(path, band) as (raster, number):
         a, b, c, d, e, f = raster.transform[:6]
         if b != 0 or d != 0:
             raise FileFormatError(
@@ -201,7 +190,7 @@ def read_cells(
             )
         window = _window(raster, box, step)
         if not (len(window.rows) and len(window.columns)):
-            raise InputError(f"{path}: no center of a cell is inside bounds={box}")
+            raise _outside(path, box)
         _check_size(raster, number, window, max_points, path)
         values = _values(raster, number, window, empty)
         crs = None if raster.crs is None else str(raster.crs.to_string())
@@ -237,8 +226,6 @@ def _of_netcdf(  # noqa: PLR0917
     most: int,
 ) -> PointSet:
     """Read the nodes of a variable that have a height."""
-    if name is not None and not isinstance(name, str):
-        raise InputError(f"{path}: band must be the name of a variable of NetCDF, got {name!r:.40}")
     found = read_heights(path, name, step, box, nodata, most)
     nodes = np.stack(np.meshgrid(found.x, found.y), axis=-1).reshape(-1, 2)
     z = found.values.ravel()
@@ -262,29 +249,20 @@ def _opened(path: Path) -> Iterator[Any]:
     if driver is None:
         raise FileFormatError(f"{path} is not a raster; known are {' '.join(_DRIVERS)}")
     rasterio = require("rasterio", extra="raster", what="reading rasters")
-    if not path.exists():
-        raise FileNotFoundError(f"{path}: no such file")
+    require_there(path)
     name = os.path.abspath(path)
     if name.startswith("/vsi"):
         raise FileFormatError(f"{path}: names that begin with /vsi are reserved by GDAL")
     _check_beside(path, driver)
-    try:
-        with warnings.catch_warnings(), rasterio.Env(**_OPTIONS):
-            warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
-            with rasterio.open(name, driver=driver) as raster:
-                if raster.transform.is_identity:
-                    raise FileFormatError(
-                        f"{path} has no georeference of its own (ground control points and world "
-                        "files do not count): write it with gdal_translate or gdalwarp"
-                    )
-                yield raster
-    except (DeloneError, FileNotFoundError, PermissionError, MemoryError):
-        raise
-    except Exception as error:
-        reason = str(error).partition("\n")[0] or type(error).__name__
-        raise FileFormatError(
-            f"{path} is truncated or not a {path.suffix} file: {reason:.200}"
-        ) from error
+    with reading_as(path, path.suffix), warnings.catch_warnings(), rasterio.Env(**_OPTIONS):
+        warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
+        with rasterio.open(name, driver=driver) as raster:
+            if raster.transform.is_identity:
+                raise FileFormatError(
+                    f"{path} has no georeference of its own (ground control points and world "
+                    "files do not count): write it with gdal_translate or gdalwarp"
+                )
+            yield raster
 
 
 def _check_beside(path: Path, driver: str) -> None:
@@ -299,6 +277,20 @@ def _check_beside(path: Path, driver: str) -> None:
         if system.stat().st_size > _LONGEST_SYSTEM:
             raise FileFormatError(f"{system} is too long for a reference system")
         check_system(system.read_text(encoding="latin-1"), str(system))
+
+
+@contextmanager
+def _of_band(path: Path, band: int | str | None) -> Iterator[tuple[Any, int]]:
+    """Yield the dataset of a file and the number of a band."""
+    if isinstance(band, str):
+        raise InputError(f"{path}: names of variables are for NetCDF; band is a number from 1 on")
+    wanted = None if band is None else as_least(band, 1, name="band")
+    with _opened(path) as raster:
+        yield raster, _band(raster, wanted, path)
+
+
+def _outside(path: Path, box: tuple[float, ...] | None) -> InputError:
+    return InputError(f"{path}: no center of a cell is inside bounds={box}")
 
 
 def _band(raster: Any, band: int | None, path: Path) -> int:

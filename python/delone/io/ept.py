@@ -11,7 +11,6 @@ The number of points of a node is compared with its file before memory is alloca
 
 from __future__ import annotations
 
-import json
 import re
 from dataclasses import dataclass
 from itertools import pairwise
@@ -20,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.files import loaded
 from delone.errors import FileFormatError
 from delone.io import las
 from delone.io.dem import as_bounds
@@ -205,7 +205,8 @@ def _read_records(  # noqa: PLR0917
     unknown = [name for name in needed if name not in names]
     if unknown:
         raise FileFormatError(
-            f"{tree.path} has no {unknown[0]!r:.80}; it has {', '.join(sorted(names))}"
+            f"{tree.path} has no dimension {unknown[0]!r:.80}; its own are "
+            f"{', '.join(sorted(names))}"
         )
     x, y, z = (_scaled(file, records[axis], axis, tree.scaling[axis]) for axis in "XYZ")
     keep: Bools = np.ones(len(records), dtype=bool)
@@ -409,9 +410,4 @@ def _loaded(path: Path) -> Any:
             raise FileFormatError(f"{path} is corrupt: it has a name twice")
         return found
 
-    try:
-        return json.loads(path.read_text(encoding="utf-8"), object_pairs_hook=once)
-    except FileFormatError:
-        raise
-    except (ValueError, RecursionError) as error:
-        raise FileFormatError(f"{path} is not JSON: {str(error)[:100]}") from error
+    return loaded(path.read_bytes(), path, once)

@@ -9,7 +9,6 @@ GeoJSON and GeoPackage themselves can contain are checked before GDAL opens the 
 
 from __future__ import annotations
 
-import json
 import mmap
 import os
 import re
@@ -21,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from delone._base.bounded import largest
 from delone._base.extras import require
+from delone._base.files import loaded
 from delone.errors import FileFormatError
 from delone.io.companions import require_companions
 from delone.io.compressed import SUFFIXES, Bounded, corrupt_is_an_error, opened
@@ -282,10 +282,7 @@ def _parse(content: bytes, source: str) -> None:
                 _check_member(value, source)
         return _Members(members)
 
-    try:
-        json.loads(content.removeprefix(b"\xef\xbb\xbf"), object_pairs_hook=look)
-    except (ValueError, RecursionError) as error:
-        raise FileFormatError(f"{source} is not JSON: {error}") from error
+    loaded(content.removeprefix(b"\xef\xbb\xbf"), source, look)
 
 
 def _check_member(system: _Members, source: str) -> None:

@@ -14,6 +14,7 @@ from typing import IO, TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone._base.extras import require
+from delone._base.files import unread
 from delone.errors import DeloneError, FileFormatError
 from delone.io.copc import is_copc, nodes_within
 from delone.io.dem import as_bounds
@@ -254,7 +255,7 @@ def _corrupt_is_an_error(path: Path) -> Iterator[None]:
                 f"have {has}: remove or repair that record (LASF_Spec, number 4), such as with "
                 "laspy or PDAL"
             ) from error
-        raise FileFormatError(f"{path} is truncated or not a LAS file: {reason}") from error
+        raise unread(path, "LAS", error) from error
 
 
 def _check_records(path: Path) -> None:

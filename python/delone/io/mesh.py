@@ -19,6 +19,7 @@ import numpy as np
 
 from delone._base.arrays import as_points, as_simplices
 from delone._base.extras import require
+from delone._base.files import unread, without
 from delone._base.values import as_values
 from delone.errors import DeloneError, FileFormatError, InputError
 from delone.exchange.meshio import TAGS, region_tags, to_meshio
@@ -94,7 +95,7 @@ def read_mesh(path: Path, *, split: bool = False) -> MeshFile:
             + ('; polygons="split" divides them' if flat else "")
         )
     if not any(block.type == "triangle" for block in mesh.cells):
-        raise FileFormatError(f"{path} contains no triangles")
+        raise without(path, "triangles")
     simplices = _simplices(mesh, "triangle", len(points), path)
     return MeshFile(points=points, simplices=simplices, z=z, source=str(path), markers=mesh.markers)
 
@@ -161,7 +162,7 @@ def _coordinates(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
     points = np.asarray(mesh.points)
     if points.ndim != 2 or points.shape[1] not in (2, 3) or len(points) < least:
-        raise FileFormatError(f"{path} contains no points")
+        raise without(path, "points")
     try:
         plane = as_points(np.ascontiguousarray(points[:, :2]))
         z = as_values(points[:, 2], len(points)) if points.shape[1] == 3 else None
@@ -197,10 +198,7 @@ def _read(path: Path, attributes: Sequence[str] | None = (), *, marked: bool = F
     except (DeloneError, FileNotFoundError, PermissionError, MemoryError):
         raise
     except (Exception, SystemExit) as error:
-        reason = str(error).partition("\n")[0] or type(error).__name__
-        raise FileFormatError(
-            f"{path} is truncated or not a {suffix} file: {reason!s:.100}"
-        ) from error
+        raise unread(path, suffix, error) from error
     cells = [Cells(block.type, block.data) for block in mesh.cells]
     markers = regions = None
     wanted = all(block.type in (*POLYGONS, *SOLIDS, "vertex", "line") for block in cells)

@@ -7,18 +7,17 @@ exactly.
 
 from __future__ import annotations
 
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from delone._base.extras import require
-from delone.errors import DeloneError, FileFormatError, InputError
+from delone._base.files import reading_as, require_there
+from delone.errors import FileFormatError, InputError
 from delone.io.nodata import is_nodata, require_declared
 from delone.io.systems import check_system
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from delone._base.types import Floats
@@ -46,7 +45,7 @@ def is_netcdf(path: Path) -> bool:
 
 def read_heights(  # noqa: PLR0917
     path: Path,
-    name: str | None,
+    name: int | str | None,
     step: int,
     box: tuple[float, ...] | None,
     nodata: float | None,
@@ -55,13 +54,14 @@ def read_heights(  # noqa: PLR0917
     """Read a variable of a file: every `step`-th row and column inside a box."""
     xarray = require("xarray", extra="xarray", what="reading NetCDF")
     require("netCDF4", extra="xarray", what="reading NetCDF")
-    if not path.exists():
-        raise FileNotFoundError(f"{path}: no such file")
-    with _corrupt_is_an_error(path):
+    if name is not None and not isinstance(name, str):
+        raise InputError(f"{path}: band must be the name of a variable of NetCDF, got {name!r:.40}")
+    require_there(path)
+    with reading_as(path, "NetCDF"):
         file = xarray.open_dataset(
             path, engine="netcdf4", mask_and_scale=False, decode_times=False, decode_coords="all"
         )
-    with file, _corrupt_is_an_error(path):
+    with file, reading_as(path, "NetCDF"):
         found = _selected(_variable(file, name, path), step, box, nodata, most, str(path))
     check_system(found.crs, str(path))
     return found
@@ -119,17 +119,6 @@ def _selected(  # noqa: PLR0917
     part = variable.isel({across: columns, up: rows}).transpose(up, across)
     values = _heights(np.asarray(part.values), variable.attrs, nodata, where)
     return Heights(values, x[columns], y[rows], _system(variable))
-
-
-@contextmanager
-def _corrupt_is_an_error(path: Path) -> Iterator[None]:
-    try:
-        yield
-    except (DeloneError, FileNotFoundError, PermissionError, MemoryError):
-        raise
-    except Exception as error:
-        reason = str(error).partition("\n")[0] or type(error).__name__
-        raise FileFormatError(f"{path} is truncated or not a NetCDF file: {reason:.200}") from error
 
 
 def _variable(file: Any, name: str | None, path: Path) -> Any:

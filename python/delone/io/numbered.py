@@ -41,12 +41,41 @@ def truncated(path: Path) -> FileFormatError:
     return FileFormatError(f"{path} is truncated: it declares more than it contains")
 
 
+def _not_numbers(path: Path, error: Exception | None = None) -> FileFormatError:
+    why = "" if error is None else f": {error}"
+    return FileFormatError(f"{path} contains something other than numbers{why}")
+
+
+def _no_counts(path: Path) -> FileFormatError:
+    return FileFormatError(f"{path} has no counts where they are expected")
+
+
+def refuse_columns(
+    path: Path, columns: Sequence[str | int] | None, attributes: Sequence[str]
+) -> None:
+    """Reject a choice of columns, which these formats fix."""
+    if columns is not None or attributes:
+        raise FileFormatError(f"{path}: the columns of these files cannot be chosen")
+
+
+def require_nodes(node: Path, path: Path) -> None:
+    """Reject a file without the file of its points."""
+    if not node.exists():
+        raise FileNotFoundError(f"{node}: no such file; {path.name} needs it for its points")
+
+
+def require_dimension(found: int, wanted: int, path: Path) -> None:
+    """Reject points in another dimension."""
+    if found != wanted:
+        raise FileFormatError(f"{path}: points have {found} coordinates, not {wanted}")
+
+
 def read_text(path: Path) -> list[str]:
     """Return the lines of a file without comments; blank ones are left out."""
     try:
         text = path.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
-        raise FileFormatError(f"{path} contains something other than numbers: {error}") from error
+        raise _not_numbers(path, error) from error
     lines = (line.partition("#")[0].strip() for line in text.splitlines())
     return [line for line in lines if line]
 
@@ -61,7 +90,7 @@ def parsed(body: bytes, path: Path) -> Floats:
             warnings.simplefilter("error", DeprecationWarning)
             found: Floats = np.fromstring(body, dtype=np.float64, sep=" ")
     except (DeprecationWarning, ValueError) as error:
-        raise FileFormatError(f"{path} contains something other than numbers") from error
+        raise _not_numbers(path) from error
     return found
 
 
@@ -74,9 +103,7 @@ class Numbers:
             words = " ".join(read_text(path)).split()
             self._values = np.array(words, dtype=np.float64)
         except ValueError as error:
-            raise FileFormatError(
-                f"{path} contains something other than numbers: {error}"
-            ) from error
+            raise _not_numbers(path, error) from error
         self._at = 0
 
     def take(self, rows: int, columns: int) -> Floats:
@@ -92,7 +119,7 @@ class Numbers:
         """Return the next counts."""
         found = self.take(1, count)[0]
         if not np.isfinite(found).all() or (found != np.floor(found)).any() or (found < 0).any():
-            raise FileFormatError(f"{self.path} has no counts where they are expected")
+            raise _no_counts(self.path)
         return [int(n) for n in found]
 
     @property
@@ -137,16 +164,14 @@ class Lines:
         try:
             return [float(word) for word in line.split()]
         except ValueError as error:
-            raise FileFormatError(
-                f"{self.path} contains something other than numbers: {error}"
-            ) from error
+            raise _not_numbers(self.path, error) from error
 
     def counts(self, least: int) -> list[int]:
         """Return the integers of the next line, at least `least`; the first ones are counts."""
         found = self.numbers()
         whole = [int(n) for n in found if abs(n) < _LARGEST and n == int(n)]
         if len(whole) < max(least, len(found)) or min(whole[:least]) < 0:
-            raise FileFormatError(f"{self.path} has no counts where they are expected")
+            raise _no_counts(self.path)
         return whole
 
     def rows(self, count: int, columns: int) -> Floats:

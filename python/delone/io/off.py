@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone._base.arrays import as_points, as_simplices
+from delone._base.files import without
 from delone.errors import FileFormatError, InputError
 from delone.io.content import content
 from delone.io.facets import facet_triangles
 from delone.io.meshfile import MeshFile
-from delone.io.numbered import Lines, as_rows
+from delone.io.numbered import Lines, as_rows, refuse_columns
 from delone.io.pointset import PointSet
 
 if TYPE_CHECKING:
@@ -34,8 +35,7 @@ def read_points(
     path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str]
 ) -> PointSet:
     """Read the vertices; see `delone.io.read_points`."""
-    if columns is not None or attributes:
-        raise FileFormatError(f"{path}: the columns of these files cannot be chosen")
+    refuse_columns(path, columns, attributes)
     points, _, _ = _opened(path)
     return PointSet(points=points[:, :2].copy(), z=points[:, 2].copy(), source=str(path))
 
@@ -53,7 +53,7 @@ def read_mesh(path: Path) -> MeshFile:
             raise FileFormatError(f"{path} has a face with {len(polygon)} corners")
         faces += facet_triangles(points, [polygon], nothing, str(path))
     if not faces:
-        raise FileFormatError(f"{path} contains no triangles")
+        raise without(path, "triangles")
     try:
         simplices = as_simplices(np.array(faces), len(points), 2)
     except InputError as error:
@@ -74,7 +74,7 @@ def _opened(path: Path) -> tuple[Floats, int, Lines]:
     npoints, count, *_ = lines.counts(2)
     rows = lines.rows(npoints, 3)
     if not npoints:
-        raise FileFormatError(f"{path} contains no points")
+        raise without(path, "points")
     try:
         return as_points(rows, ndim=3), count, lines
     except InputError as error:

@@ -15,6 +15,7 @@ import numpy as np
 
 from delone._base.arrays import as_points
 from delone._base.extras import require
+from delone._base.files import no_layers, unread
 from delone._base.values import as_values
 from delone.errors import DeloneError, FileFormatError, InputError
 from delone.io.pointset import PointSet, choose_columns, find_column
@@ -72,7 +73,7 @@ def read_geometries(
 ) -> GeometrySet:
     """Read points, lines and areas from GeoParquet; see `delone.io.read_geometries`."""
     if layer is not None:
-        raise FileFormatError(f"{path}: {path.suffix} files have no layers")
+        raise no_layers(path)
     if not holds_geometries(path):
         raise FileFormatError(f"{path} is a table without geometries")
     with _corrupt_is_an_error(path):
@@ -141,10 +142,7 @@ def _corrupt_is_an_error(path: Path) -> Iterator[None]:
             f"{source} declares more than fits into memory; it may be corrupt"
         ) from error
     except Exception as error:
-        reason = str(error).partition("\n")[0]
-        raise FileFormatError(
-            f"{source} is truncated or not a {path.suffix} file: {reason}"
-        ) from error
+        raise unread(source, path.suffix, error) from error
 
 
 def _parquet(

@@ -48,6 +48,10 @@ class _Element:
     properties: list[tuple[str, str, str]] = field(default_factory=list)
 
 
+def _longer(path: Path) -> FileFormatError:
+    return FileFormatError(f"{path} is corrupt: it has more than it declares")
+
+
 def read(path: Path) -> ReadMesh:
     """Read the points and polygons of a file."""
     content = path.read_bytes()
@@ -237,7 +241,7 @@ class _Text(_Rows):
     def finish(self) -> None:
         """Reject content after the declared items."""
         if self._at < len(self._values):
-            raise FileFormatError(f"{self.path} is corrupt: it has more than it declares")
+            raise _longer(self.path)
 
 
 class _Binary(_Rows):
@@ -296,4 +300,4 @@ class _Binary(_Rows):
     def finish(self) -> None:
         """Reject content after the declared items."""
         if self._content[self._at :].strip():
-            raise FileFormatError(f"{self.path} is corrupt: it has more than it declares")
+            raise _longer(self.path)

@@ -5,7 +5,9 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from delone._base.arrays import as_choice, as_count, as_number
+from delone._base.arrays import as_choice, as_count
+from delone._base.files import existing, no_curves, no_layers
+from delone._base.numbers import as_positive
 from delone.errors import FileFormatError, InputError
 from delone.io.registry import (
     FACETS,
@@ -14,7 +16,6 @@ from delone.io.registry import (
     READ_MESHES,
     READERS,
     SHEETS,
-    existing,
     is_lidar,
     is_point_tiles,
     is_text,
@@ -137,7 +138,7 @@ def read_points(
     if module.__name__.endswith((".vector", ".arrays", ".landxml", ".dxf", ".dem")):
         options["layer"] = layer
     elif layer is not None:
-        raise FileFormatError(f"{file}: {file.suffix.lower()} files have no layers")
+        raise no_layers(file)
     read: Callable[..., PointSet] = module.read_points
     return read(file, **options)
 
@@ -347,11 +348,8 @@ def _chord(file: Path, chord: float | None, curved: tuple[str, ...] = ("dxf",)) 
     if chord is None:
         return {}
     if READERS.get(suffix_of(file)) not in curved:
-        raise InputError(f"{file}: chord is for DXF files, which have curves")
-    distance = as_number(chord, name="chord")
-    if not distance > 0:
-        raise InputError(f"chord must be a distance above 0, got {distance:g}")
-    return {"chord": distance}
+        raise no_curves(file)
+    return {"chord": as_positive(chord, name="chord")}
 
 
 def read_mesh(path: str | os.PathLike[str], *, polygons: str | None = None) -> MeshFile:

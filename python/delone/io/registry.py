@@ -9,6 +9,7 @@ import importlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from delone._base.files import existing
 from delone.errors import FileFormatError
 from delone.io.compressed import SUFFIXES
 
@@ -27,7 +28,6 @@ __all__ = [
     "SHEETS",
     "TETGEN",
     "TRIANGLE",
-    "existing",
     "holds_geometries",
     "holds_surface",
     "input_suffixes",
@@ -159,18 +159,3 @@ def reader_of(file: Path) -> Any:
     if is_point_tiles(file):
         return importlib.import_module("delone.io.ept")
     return module_of(READERS, suffix_of(file), file, "read")
-
-
-def existing(path: str | os.PathLike[str]) -> Path:
-    """Return the path of a file that exists and is not empty."""
-    file = Path(path)
-    if not file.exists():
-        raise FileNotFoundError(f"{file}: no such file")
-    if file.is_dir():
-        raise FileFormatError(f"{file} is a folder, not a file")
-    if not file.is_file():
-        # Files are read twice: their format and sizes are checked before they are read.
-        raise FileFormatError(f"{file} is a pipe or device; write its contents to a file first")
-    if file.stat().st_size == 0:
-        raise FileFormatError(f"{file} is empty")
-    return file

@@ -12,13 +12,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone._base.arrays import as_points
+from delone._base.files import without
 from delone.errors import FileFormatError, InputError
 from delone.exchange.parts import boundary
 from delone.io.companions import require_companion
 from delone.io.content import content
 from delone.io.facets import facet_triangles
 from delone.io.meshfile import MeshFile
-from delone.io.numbered import Lines, Numbers, as_markers, as_rows, first_number, table
+from delone.io.numbered import (
+    Lines,
+    Numbers,
+    as_markers,
+    as_rows,
+    first_number,
+    require_dimension,
+    require_nodes,
+    table,
+)
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -72,8 +82,7 @@ def read_nodes(path: Path) -> Floats:
 def _nodes_beside(path: Path) -> tuple[Floats, int]:
     """Return the points of the .node file next to another, and the number of the first."""
     node = _node(path)
-    if not node.exists():
-        raise FileNotFoundError(f"{node}: no such file; {path.name} needs it for its points")
+    require_nodes(node, path)
     points, first, _ = _opened(node)
     return points, first
 
@@ -84,8 +93,7 @@ def _opened(path: Path) -> tuple[Floats, int, Lines]:
     count, dimension, *_ = lines.counts(2)
     if not count and path.suffix.lower() != ".node":
         return *_nodes_beside(path), lines
-    if dimension != 3:
-        raise FileFormatError(f"{path}: points have {dimension} coordinates, not three")
+    require_dimension(dimension, 3, path)
     rows = lines.rows(count, 4)
     first = first_number(rows[:, 0], path)
     try:
@@ -107,7 +115,7 @@ def read_mesh(path: Path) -> MeshFile:
         # The further nodes of an element are on its edges.
         tetrahedra = as_rows(rows[:, 1:5], first, path, len(points))
         if not count:
-            raise FileFormatError(f"{path} contains no tetrahedra")
+            raise without(path, "tetrahedra")
         region = rows[:, 1 + corners : 2 + corners]
         whole = attributes and (region == np.floor(region)).all()
         return MeshFile(
@@ -123,7 +131,7 @@ def read_mesh(path: Path) -> MeshFile:
 
 def _surface(path: Path, points: Floats, faces: Indices, **further: Any) -> MeshFile:
     if not len(faces):
-        raise FileFormatError(f"{path} contains no triangles")
+        raise without(path, "triangles")
     plane, z = points[:, :2].copy(), points[:, 2].copy()
     return MeshFile(points=plane, simplices=faces, z=z, source=str(path), **further)
 
@@ -168,8 +176,7 @@ def _facets(path: Path) -> MeshFile:
 def _polygon(lines: Lines) -> tuple[list[list[float]], Floats, float]:
     """Return the facet of a .smesh file: one polygon without holes, and its marker."""
     corners, rest = lines.polygon()
-    if len(corners) < 3:
-        raise FileFormatError(f"{lines.path} has a facet with {len(corners)} corners")
+    _require_corners(corners, lines)
     return [corners], np.empty((0, 3)), rest[0] if rest else 0.0
 
 
@@ -179,9 +186,13 @@ def _polygons(lines: Lines) -> tuple[list[list[float]], Floats, float]:
     if not 0 < count <= lines.left or holes < 0:
         raise FileFormatError(f"{lines.path} has a facet of {count} polygons and {holes} holes")
     polygons = [lines.polygon()[0] for _ in range(count)]
-    if len(polygons[0]) < 3:
-        raise FileFormatError(f"{lines.path} has a facet with {len(polygons[0])} corners")
+    _require_corners(polygons[0], lines)
     return polygons, lines.rows(holes, 4)[:, 1:], float(marker)
+
+
+def _require_corners(polygon: list[float], lines: Lines) -> None:
+    if len(polygon) < 3:
+        raise FileFormatError(f"{lines.path} has a facet with {len(polygon)} corners")
 
 
 def _seeds(lines: Lines, columns: int) -> Floats:

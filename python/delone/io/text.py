@@ -19,6 +19,7 @@ from typing import IO, TYPE_CHECKING
 
 import numpy as np
 
+from delone._base.files import cut_short
 from delone.errors import FileFormatError
 from delone.io.compressed import Bounded, corrupt_is_an_error, opened, require_expansion
 from delone.io.counts import announced
@@ -84,9 +85,7 @@ def read_points(
         with _opened(path) as lines:
             table = _table(lines, layout, chosen + extra, path, words)
     if layout.claimed is not None and len(table) < layout.claimed:
-        raise FileFormatError(
-            f"{source} declares {layout.claimed} points and contains {len(table)}: it is truncated"
-        )
+        raise cut_short(source, f"{layout.claimed} points", len(table))
     z = np.ascontiguousarray(table[:, 2]) if len(chosen) == 3 else None
     further = dict(zip(attributes, table[:, len(chosen) :].T, strict=True)) | words.columns()
     return PointSet(

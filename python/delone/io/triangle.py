@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone._base.arrays import as_points, as_simplices
+from delone._base.files import without
 from delone.errors import FileFormatError, InputError
 from delone.exchange.parts import boundary
 from delone.exchange.second import of_order
@@ -21,7 +22,16 @@ from delone.io import tetgen
 from delone.io.companions import require_companion
 from delone.io.content import content
 from delone.io.meshfile import MeshFile
-from delone.io.numbered import Numbers, as_markers, as_rows, first_number, table
+from delone.io.numbered import (
+    Numbers,
+    as_markers,
+    as_rows,
+    first_number,
+    refuse_columns,
+    require_dimension,
+    require_nodes,
+    table,
+)
 from delone.io.pointset import PointSet
 
 if TYPE_CHECKING:
@@ -90,15 +100,14 @@ def read_triangle(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
 def _beside(file: Path) -> tuple[dict[str, NDArray[Any]], int]:
     node = file.with_suffix(".node")
     require_companion(file, node)
-    if not node.exists():
-        raise FileNotFoundError(f"{node}: no such file; {file.name} needs it for its points")
+    require_nodes(node, file)
     return _vertices(Numbers(node))
 
 
 def _vertices(numbers: Numbers) -> tuple[dict[str, NDArray[Any]], int]:
     count, dimension, attributes, markers = numbers.head(4)
-    if count and dimension != 2:
-        raise FileFormatError(f"{numbers.path}: points have {dimension} coordinates, not two")
+    if count:
+        require_dimension(dimension, 2, numbers.path)
     rows = numbers.take(count, 3 + attributes + markers)
     found: dict[str, NDArray[Any]] = {"vertices": rows[:, 1:3].copy()}
     if attributes:
@@ -143,8 +152,7 @@ def read_points(
     everything: bool = False,
 ) -> PointSet:
     """Read the points of a file; see `delone.io.read_points`."""
-    if columns is not None or attributes:
-        raise FileFormatError(f"{path}: the columns of these files cannot be chosen")
+    refuse_columns(path, columns, attributes)
     if tetgen.is_solid(path):
         places = tetgen.read_nodes(path)
         return PointSet(points=places[:, :2].copy(), z=places[:, 2].copy(), source=str(path))
@@ -172,7 +180,7 @@ def read_mesh(path: Path) -> MeshFile:
     found = read_triangle(path)
     points = _points(found, path)
     if "triangles" not in found:
-        raise FileFormatError(f"{path} contains no triangles")
+        raise without(path, "triangles")
     return MeshFile(
         points=points, simplices=as_simplices(found["triangles"], len(points), 2), source=str(path)
     )

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone._base.extras import require
+from delone._base.files import cut_short, without
 from delone.errors import DeloneError, FileFormatError
 from delone.exchange.geopandas import to_geopandas
 from delone.io.compressed import SUFFIXES
@@ -106,10 +107,7 @@ def _read(
         kept = fields if attributes is None else kept
         frame = pyogrio.read_dataframe(name, layer=layer, columns=kept)
     if len(frame) < facts["features"]:
-        claimed = facts["features"]
-        raise FileFormatError(
-            f"{source} declares {claimed} features and contains {len(frame)}: it is truncated"
-        )
+        raise cut_short(source, f"{facts['features']} features", len(frame))
     return frame
 
 
@@ -179,7 +177,7 @@ def geometries_of(
     For attributes, None means all.
     """
     if not hasattr(frame, "geometry") or not len(frame):
-        raise FileFormatError(f"{source} contains no points")
+        raise without(source, "points")
     heights = None
     for name in _height(columns):
         heights = np.asarray(frame[_same(frame, name, source)], dtype=np.float64)

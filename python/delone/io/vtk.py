@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from delone._base.files import corrupt
 from delone.errors import FileFormatError
 from delone.io.cells import ReadMesh
 from delone.io.counts import announced
@@ -131,10 +132,10 @@ class _Reader:
             # All cells have the same number of corners.
             rows = flat.reshape(count, -1)[:, 1:]
             return _List(rows.ravel(), width * np.arange(1, count + 1))
-        starts, at, values = [], 0, flat.tolist()
-        for _ in range(min(count, len(values))):
-            if at >= len(values) or values[at] < 0:
-                raise self._corrupt("its counts do not match its corners")
+        starts: list[int] = []
+        at, values = 0, flat.tolist()
+        # A count below 0 ends the walk before the end of the values.
+        while len(starts) < count and at < len(values) and values[at] >= 0:
             starts.append(at)
             at += 1 + values[at]
         if at != len(values) or len(starts) != count:
@@ -248,4 +249,4 @@ class _Reader:
         return read
 
     def _corrupt(self, what: str) -> FileFormatError:
-        return FileFormatError(f"{self._path} is truncated or corrupt: {what}")
+        return corrupt(self._path, what)

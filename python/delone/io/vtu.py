@@ -18,6 +18,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from delone._base.bounded import largest
+from delone._base.files import corrupt, unread
 from delone.errors import FileFormatError
 from delone.io.cells import POLYGONS, SOLIDS, Cells, ReadMesh, name_of_polygon
 from delone.io.markup import decoded, refuse_document_type
@@ -104,7 +105,7 @@ def _tree(path: Path) -> tuple[Any, bytes | None]:
     try:
         return ElementTree.fromstring(content, ElementTree.XMLParser(encoding=encoding)), raw
     except (ElementTree.ParseError, LookupError, ValueError) as error:
-        raise FileFormatError(f"{path} is truncated or not a .vtu file: {error}") from error
+        raise unread(path, ".vtu", error) from error
 
 
 def _piece(piece: Any, arrays: _Arrays, path: Path) -> ReadMesh:
@@ -252,7 +253,7 @@ class _Arrays:
         except (ValueError, OverflowError, zlib.error, lzma.LZMAError) as error:
             if isinstance(error, FileFormatError):
                 raise
-            raise FileFormatError(f"{self.path} is truncated or corrupt: {error!s:.100}") from error
+            raise corrupt(self.path, error) from error
 
     def _content(self, element: Any, form: str) -> bytes:
         """Return the bytes of a binary array."""

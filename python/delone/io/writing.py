@@ -14,6 +14,7 @@ import numpy as np
 from delone._base.arrays import as_choice, as_flag, as_plain_array
 from delone._base.atomic import replacing
 from delone._base.georeference import as_crs, crs_of
+from delone._base.values import require_mapping
 from delone.errors import DtypeError, FileFormatError, InputError
 from delone.exchange.second import as_order
 from delone.io.content import Wanted
@@ -259,8 +260,7 @@ def _plain(
     """Return attributes as arrays of dtypes that the format can store."""
     if attributes is None:
         return None
-    if not hasattr(attributes, "items"):
-        raise DtypeError(f"attributes must be a mapping of names to arrays, got {attributes!r:.60}")
+    require_mapping(attributes, "attributes")
     found = {}
     for name, values in attributes.items():
         array = as_plain_array(values, f"attribute {name!r}")

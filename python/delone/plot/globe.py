@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.errors import InputError, ShapeError
+from delone._base.values import require_shape
+from delone.errors import InputError
 from delone.plot.axes import draw_dots, new_axes, thin
 
 if TYPE_CHECKING:
@@ -109,8 +110,7 @@ def plot_globe(
 
 def _as_values(values: ArrayLike, count: int) -> Floats:
     colors = np.asarray(values, dtype=float)
-    if colors.shape != (count,):
-        raise ShapeError(f"values must have shape ({count},), got {colors.shape}")
+    require_shape(colors, (count,), "values")
     return colors
 
 

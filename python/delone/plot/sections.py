@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from delone._base.arrays import as_count
+from delone._base.arrays import as_least
 from delone._base.extras import require
 from delone.errors import InputError
 
@@ -26,9 +26,7 @@ def draw_sections(
 ) -> Any:
     """Draw heights over offsets for each station."""
     pyplot = require("matplotlib.pyplot", extra="plot", what="drawing")
-    across = min(as_count(columns, name="columns"), len(tables))
-    if across < 1:
-        raise InputError(f"columns must be at least 1, got {columns}")
+    across = min(as_least(columns, 1, name="columns"), len(tables))
     if len(tables) > _MOST:
         raise InputError(
             f"{len(tables):,} sections do not fit into one figure, at most {_MOST}: choose fewer "

@@ -12,6 +12,7 @@ import numpy as np
 
 from delone._base.arrays import as_choice, as_flag, as_number, as_plain_array
 from delone._base.extras import require
+from delone._base.numbers import as_share
 from delone._base.values import as_values
 from delone.errors import InputError
 from delone.plot.plotter import add_points, as_pyvista_cmap, new_plotter
@@ -52,9 +53,7 @@ def plot(
     as_choice(cut, ("none", *_AXES), name="cut")
     dots, bar = as_flag(points, name="points"), as_flag(colorbar, name="colorbar")
     _require_simplices(mesh)
-    share, colors = as_number(shrink, name="shrink"), as_pyvista_cmap(cmap)
-    if not 0 < share <= 1:
-        raise InputError(f"shrink must be above 0 and at most 1, got {shrink}")
+    share, colors = as_share(shrink, name="shrink"), as_pyvista_cmap(cmap)
     shown, angles = _in_front(mesh, cut), None
     if below is not None:
         bound, angles = as_number(below, name="below"), _smallest_dihedrals(mesh)

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from delone._base.arrays import as_callback, as_limit, as_number
+from delone._base.arrays import as_callback, as_limit
+from delone._base.numbers import as_share
 from delone._tiling import measures
 from delone._tiling.plane import topology
 from delone._tiling.sizes import chosen
-from delone.errors import InputError, InternalError
+from delone.errors import InternalError
 from delone.refine import domains
 from delone.refine.domains import Counts
 from delone.refine.rounds import MOST_ADDED, Limits, as_min_angle, rounds
@@ -48,9 +49,7 @@ def finer(
     progress: Any,
 ) -> M:
     """Return a finer mesh; see ``Mesh.refine``."""
-    ratio = as_number(ratio, name="ratio")
-    if not 0 < ratio <= 1:
-        raise InputError(f"ratio must be above 0 and at most 1, got {ratio!r:.80}")
+    ratio = as_share(ratio, name="ratio")
     bound = float(mesh._bound[0]) if min_angle is None else as_min_angle(min_angle)
     budget = MOST_ADDED if max_points is None else as_limit(max_points, name="max_points")
     limits = Limits(bound, budget, False, as_callback(progress, name="progress"), mesh._workers)

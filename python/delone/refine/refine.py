@@ -14,11 +14,12 @@ import numpy as np
 from delone._base.arrays import as_callback, as_count, as_flag, as_limit, as_plain_array, as_workers
 from delone._base.counting import listed
 from delone._base.masks import refuse_masks
+from delone._base.values import as_labels, require_shape
 from delone.constrained import geodata
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.polygons import inside_of
 from delone.constrained.segments import open_ends
-from delone.errors import DtypeError, InputError, ShapeError
+from delone.errors import DtypeError, InputError
 from delone.refine import domains
 from delone.refine.domains import Domain
 from delone.refine.meshed import Mesh
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 
     from delone._base.types import Bools, Indices
 
-__all__ = ["as_rows", "filled", "mesh"]
+__all__ = ["filled", "mesh"]
 
 _FIRST = 10
 _DOMAINS = "a ConstrainedDelaunay, (points, segments) or geometries"
@@ -216,7 +217,7 @@ def filled(
         base,
         region=region,
         segment_markers=_segment_markers(base, markers[0]),
-        point_markers=as_rows(markers[1], base.npoints - base.nadded, "point_markers"),
+        point_markers=as_labels(markers[1], base.npoints - base.nadded, name="point_markers"),
         frozen=_fixed(fixed, count),
     )
     if isinstance(fixed, str):
@@ -226,38 +227,24 @@ def filled(
     return Mesh._of(made, counts, limits.min_angle, stages, limits.workers)._refer(base)
 
 
-def as_rows(values: ArrayLike | None, count: int, name: str) -> Indices:
-    """Return 32-bit numbers, one per row, from shape (count,) or (count, 1); zeros for None."""
-    if values is None:
-        return np.zeros(count, dtype=np.int32)
-    array = as_plain_array(values, name)
-    if array.shape not in ((count,), (count, 1)):
-        raise ShapeError(f"{name} must have shape ({count},), got {array.shape}")
-    if array.dtype.kind not in "iu" and array.size:
-        raise DtypeError(f"{name} must be integers, got dtype {array.dtype}")
-    limit = np.iinfo(np.int32)
-    if array.size and (int(array.min()) < limit.min or int(array.max()) > limit.max):
-        raise InputError(f"{name} must be 32-bit integers")
-    return array.reshape(count).astype(np.int32)
-
-
 def _segment_markers(base: ConstrainedDelaunay, given: ArrayLike | None) -> Indices:
     """Return the given markers; by default one for each ring and line of geometries."""
     if given is None:
         return base.part_of_segment + np.int32(1)
-    return as_rows(given, len(base.input_segments), "segment_markers")
+    return as_labels(given, len(base.input_segments), name="segment_markers")
 
 
 def _fixed(fixed: bool | str | ArrayLike, count: int) -> Bools:
+    wanted = "fixed must be a bool, 'boundary' or a mask"
     if isinstance(fixed, str):
         if fixed != "boundary":
-            raise InputError(f"fixed must be a bool, 'boundary' or a mask, got {fixed!r:.80}")
+            raise InputError(f"{wanted}, got {fixed!r:.80}")
         return np.zeros(count, dtype=bool)
     array = as_plain_array(fixed, "fixed")
     if array.dtype.kind != "b":
-        raise DtypeError(f"fixed must be a bool, 'boundary' or a mask, got dtype {array.dtype}")
-    if array.shape not in ((), (count,)):
-        raise ShapeError(f"fixed must have shape ({count},), got {array.shape}")
+        raise DtypeError(f"{wanted}, got an array of dtype {array.dtype}")
+    if array.ndim:
+        require_shape(array, (count,), "fixed")
     return np.broadcast_to(array, (count,)).copy()
 
 

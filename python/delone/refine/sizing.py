@@ -18,9 +18,10 @@ import numpy as np
 
 from delone import _core
 from delone._base.arrays import as_workers
+from delone._base.numbers import as_positive
 from delone._tiling import measures
-from delone._tiling.sizes import checked, evaluator, formatted, is_number, positive, rounded
-from delone.errors import BudgetExceededError, InputError, LimitError
+from delone._tiling.sizes import checked, evaluator, formatted, is_number, require_region, rounded
+from delone.errors import BudgetExceededError, LimitError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -61,19 +62,15 @@ class Sizing:
         if not isinstance(given, Mapping):
             self._by_region = np.minimum(self._by_region, self._cap(given, name, area))
             return
-        unknown = sorted(set(given) - set(regions.tolist()))
-        if unknown:
-            known = ", ".join(map(str, regions[:10].tolist()))
-            raise InputError(
-                f"{name}: there is no region {unknown[0]!r:.80}; the regions are {known}"
-            )
+        known = set(regions.tolist())
         for region, value in given.items():
+            require_region(region, known, name)
             at = np.flatnonzero(regions == region)
             cap = self._cap(value, f"{name} of region {region}", area)
             self._by_region[at] = np.minimum(self._by_region[at], cap)
 
     def _cap(self, value: Any, name: str, area: Callable[[float], float]) -> float:
-        number = positive(value, name)
+        number = as_positive(value, name=name)
         cap = area(number)
         if cap == 0 or (self._unit == 1 and math.isinf(cap) and math.isfinite(number)):
             raise LimitError(_out_of_range(f"{name} {value!r:.80}"))

@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._base.arrays import as_number, as_workers
+from delone._base.arrays import as_number, as_workers, wrong_shape
 from delone._base.extras import require
+from delone._base.numbers import as_positive
+from delone._base.values import require_real
 from delone.areal.paired import row_sums
-from delone.errors import DtypeError, InputError, ShapeError
+from delone.errors import InputError
 from delone.plot.axes import new_axes, thin
 from delone.sphere.coordinates import lonlat_of
 from delone.sphere.large import overlaps_of
@@ -52,11 +54,8 @@ def plot_grid(
     field = None if values is None else _field(grid, values)
     left, bottom, right, top = _box(grid, bounds)
     if field is not None:
-        step = (right - left) / _PIXELS if resolution is None else as_number(
-            resolution, name="resolution"
-        )  # fmt: skip
-        if not 0 < step < np.inf:
-            raise InputError(f"resolution must be positive, got {resolution!r:.60}")
+        given = (right - left) / _PIXELS if resolution is None else resolution
+        step = as_positive(given, name="resolution", finite=True)
         x = np.linspace(left, right, max(1, round((right - left) / step)) + 1)
         y = np.linspace(bottom, top, max(1, round((top - bottom) / step)) + 1)
         image = _means(grid, field, type(grid).from_lonlat(x, y))
@@ -97,21 +96,17 @@ def _means(grid: Any, field: Floats, pixels: Any) -> Floats:
 def _field(grid: Any, values: ArrayLike) -> Floats:
     """Return one value for each cell."""
     array = np.asarray(values)
-    if array.dtype.kind not in "iufb":
-        raise DtypeError(f"values must be real numbers, got {array.dtype}")
+    require_real(array, "values", kinds="iufb")
     if array.shape not in {grid.grid_shape, (grid.ncells,)}:
-        raise ShapeError(
-            f"values must have shape {grid.grid_shape} or ({grid.ncells},), got {array.shape}"
-        )
+        raise wrong_shape("values", f"{grid.grid_shape} or ({grid.ncells},)", array)
     return array.ravel().astype(np.float64)
 
 
 def _box(grid: Any, bounds: Sequence[float] | None) -> tuple[float, float, float, float]:
     """Return the left, bottom, right and top of the map."""
     if bounds is not None:
-        if len(bounds) != 4:
-            raise ShapeError(f"bounds must be left, bottom, right and top, got {bounds!r:.60}")
-        left, bottom, right, top = (as_number(bound, name="bounds") for bound in bounds)
+        given = [as_number(bound, name="bounds") for bound in bounds]
+        left, bottom, right, top = given if len(given) == 4 else (np.nan,) * 4
         right += 360.0 if right < left else 0.0
         if not (left < right <= left + 360 and -90 <= bottom < top <= 90):
             raise InputError(f"bounds must be left, bottom, right and top, got {bounds!r:.60}")

@@ -14,16 +14,17 @@ import numpy as np
 
 from delone import _core
 from delone._base.arrays import (
-    as_number,
     as_plain_array,
     as_points,
     as_vectors,
     as_workers,
     require_finite,
+    wrong_shape,
 )
 from delone._base.counting import agreed, counted
 from delone._base.georeference import caller_level, crs_of, parsed
 from delone._base.immutable import own_copy
+from delone._base.numbers import as_positive
 from delone.errors import DirectionError, DtypeError, InputError, ShapeError
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ def queries_of(xi: ArrayLike, *, degrees: bool, workers: int | None) -> Floats:
     array = as_plain_array(xi, "xi")
     columns = array.shape[-1] if array.ndim else 0
     if columns not in {2, 3}:
-        raise ShapeError(f"xi must have shape (..., 2) or (..., 3), got {array.shape}")
+        raise wrong_shape("xi", "(..., 2) or (..., 3)", array)
     if columns == 3:
         return as_vectors(xi, 3, name="xi")
     angles = as_vectors(xi, 2, name="xi")
@@ -129,9 +130,7 @@ def _refuse_projected(given: Any, name: str) -> None:
 
 def as_step(step: Any) -> float:
     """Return the largest distance between points of a drawn arc, in degrees, checked."""
-    width = as_number(step, name="step")
-    if not 0 < width < np.inf:
-        raise InputError(f"step must be positive and finite, got {step!r:.60}")
+    width = as_positive(step, name="step", finite=True)
     return width
 
 

@@ -11,8 +11,8 @@ from delone._base.arrays import as_flag, as_workers
 from delone._base.counting import counted
 from delone._base.duplicates import vertices_of
 from delone._base.immutable import kept, sealed
+from delone._base.numbers import as_nonnegative
 from delone._tiling import measures
-from delone._tiling.location import as_tolerance
 from delone._tiling.plane import topology
 from delone.errors import InternalError
 from delone.exchange.parts import Parts
@@ -335,7 +335,7 @@ class Delaunay(OnGlobe):
         >>> mesh.find_simplex([(180, 1), (0, 0)]) >= 0
         array([ True, False])
         """
-        limit = as_tolerance(tolerance)
+        limit = as_nonnegative(tolerance, name="tolerance")
         found = self._ask(xi, self._locator.find)
         if not limit or self.covers_sphere:
             return found

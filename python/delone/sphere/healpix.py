@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_least
+from delone._base.arrays import as_index
 from delone._base.blocks import blocks
 from delone.errors import InputError
 
@@ -28,9 +28,7 @@ _LARGEST = 1 << 13
 
 def healpix_corners(nside: int, *, nested: bool, workers: int) -> Floats:
     """Return the four corners of each pixel, counter-clockwise from the south, (n, 4, 3)."""
-    n = as_least(nside, 1, name="nside")
-    if n > _LARGEST:
-        raise InputError(f"nside must be at most {_LARGEST}, got {n}")
+    n = as_index(nside, 1, _LARGEST, name="nside")
     if nested and n & (n - 1):
         raise InputError(f"nside must be a power of two for nested pixels, got {n}")
     face, x, y = _nested(n) if nested else _ringed(n)

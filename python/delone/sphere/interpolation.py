@@ -8,16 +8,15 @@ those of vectors.
 from __future__ import annotations
 
 import copy
-import math
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_choice, as_flag, as_number, as_plain_array, as_workers
+from delone._base.arrays import as_choice, as_flag, as_plain_array, as_workers
 from delone._base.counting import agreed
+from delone._base.numbers import as_nonnegative, as_positive
 from delone._base.renames import renamed
-from delone._tiling.location import as_tolerance
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.interpolate.base import as_max_distance, shaped_derivatives
 from delone.interpolate.hull import Terms
@@ -63,7 +62,7 @@ class _Interpolator(VectorInterpolation):
         workers: int | None = None,
     ) -> None:
         self._extrapolate = as_choice(extrapolate, self.EXTRAPOLATE, name="extrapolate")
-        self._tolerance = as_tolerance(tolerance)
+        self._tolerance = as_nonnegative(tolerance, name="tolerance")
         self._duplicates = as_choice(duplicates, DUPLICATES, name="duplicates")
         self._nan = as_choice(nan, NAN, name="nan")
         as_workers(workers)
@@ -430,9 +429,7 @@ class _Continuous(_Interpolator):
         >>> per_radian.round(3), (per_radian / 6371.0).round(6)
         (array([5.672, 0.   ]), array([0.00089, 0.     ]))
         """
-        radius = as_number(radius, name="radius")
-        if not 0 < radius < math.inf:
-            raise InputError(f"radius must be positive, got {radius!r:.80}")
+        radius = as_positive(radius, name="radius", finite=True)
         if several := self._several(values):
             field, narrow = several
             return field.joined([(k, part.gradient(xi, radius=radius)) for k, part in narrow], 1)

@@ -8,6 +8,7 @@ import numpy as np
 
 from delone._base.atomic import replacing
 from delone._base.extras import require
+from delone._base.files import reading_as
 from delone.areal.paired import added, row_sums
 from delone.errors import FileFormatError, InputError
 from delone.sphere.coordinates import lonlat_of
@@ -90,11 +91,7 @@ def write_map(
             "without limiter=True"
         )
     netcdf = require("netCDF4", extra="xarray", what="writing NetCDF files")
-    for name, grid, areas in zip(
-        ("source", "target"), grids, (weights.source_areas, weights.target_areas), strict=True
-    ):
-        if grid is not None and grid.ncells != len(areas):
-            raise InputError(f"{name} has {grid.ncells} cells, and the weights {len(areas)}")
+    weights._require_fit(grids)
     with replacing(path) as temporary, netcdf.Dataset(temporary, "w", format=form) as file:
         _write_heads(file, weights, layout, grid_names)
         fractions = weights.source_fractions, weights.fractions
@@ -209,12 +206,8 @@ def _write_places(file: Any, names: dict[str, str], grid: Grid) -> None:
 def read_map(path: str | os.PathLike[str], grids: Grids) -> tuple[tuple[Any, ...], int]:
     """Return the parts of the weights in a file, and their order; see `Weights.from_netcdf`."""
     netcdf = require("netCDF4", extra="xarray", what="reading NetCDF files")
-    try:
+    with reading_as(path, "NetCDF"):
         file = netcdf.Dataset(path)
-    except OSError as error:
-        if isinstance(error, FileNotFoundError | PermissionError):
-            raise
-        raise FileFormatError(f"{path} is not a NetCDF file: {error}") from error
     with file:
         file.set_auto_mask(False)
         parts = _parts(file, str(path), grids)

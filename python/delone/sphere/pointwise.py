@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from delone._base.types import Bools, Floats, Rows
     from delone.sphere.grid import Grid
 
-__all__ = ["POINTWISE", "Entries", "pointwise"]
+__all__ = ["POINTWISE", "Entries", "pointwise", "refuse_neighbors"]
 
 POINTWISE = (
     "nearest", "binned", "linear", "bilinear", "sibson", "laplace", "inverse_distance",
@@ -45,6 +45,12 @@ class _Pair(NamedTuple):
     sources: Rows
     targets: Rows
     workers: int | None
+
+
+def refuse_neighbors(neighbors: int | None, method: str) -> None:
+    """Reject a number of neighbors for a method that takes none."""
+    if neighbors is not None and method != "inverse_distance":
+        raise InputError(f"neighbors is for inverse_distance, got {method!r:.60}")
 
 
 def pointwise(

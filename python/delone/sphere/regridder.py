@@ -18,7 +18,7 @@ from delone.errors import DtypeError, InputError, ShapeError
 from delone.sphere.formats import Choices
 from delone.sphere.grid import Grid
 from delone.sphere.overlaps import Overlaps
-from delone.sphere.pointwise import POINTWISE
+from delone.sphere.pointwise import POINTWISE, refuse_neighbors
 from delone.sphere.targets import side_of
 from delone.sphere.weights import Weights
 
@@ -165,9 +165,8 @@ class Regridder(Immutable):
                     )
                 given |= {"extrapolate": extrapolate, "power": power, "neighbors": neighbors}
                 weights = Weights.between(*grids, method, workers=workers, **given)
-            elif neighbors is not None:
-                raise InputError(f"neighbors is for inverse_distance, got {method!r:.60}")
             else:
+                refuse_neighbors(neighbors, method)
                 shared = Overlaps(*grids, workers=workers)
                 weights = shared.to_weights(method, order=order, limiter=limiter, **given)
         else:
@@ -442,7 +441,4 @@ def _require_fit(weights: Weights, grids: tuple[Grid, Grid]) -> None:
     """Reject weights that belong to different grids."""
     if not isinstance(weights, Weights):
         raise DtypeError(f"weights must be sphere.Weights, got {type(weights).__name__}")
-    counts = len(weights.source_fractions), len(weights.fractions)
-    for name, grid, count in zip(("source", "target"), grids, counts, strict=True):
-        if grid.ncells != count:
-            raise InputError(f"{name} has {grid.ncells} cells, and the weights {count}")
+    weights._require_fit(grids)

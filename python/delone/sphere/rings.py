@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_points, as_workers, require_finite
+from delone._base.arrays import as_points, as_workers, require_finite, wrong_shape
 from delone._base.extras import require
 from delone._base.georeference import crs_of, is_geographic
 from delone.errors import InputError, ShapeError
@@ -72,7 +72,7 @@ def as_bounds(values: ArrayLike, *, name: str, degrees: bool) -> Floats:
             )
         flat = np.concatenate((first, second[-1:]))
     elif array.ndim != 1:
-        raise ShapeError(f"{name} must have shape (n + 1,) or (n, 2), got {array.shape}")
+        raise wrong_shape(name, "(n + 1,) or (n, 2)", array)
     if len(flat) < 2:
         raise ShapeError(f"{name} must have at least 2 edges, got {len(flat)}")
     steps = np.diff(flat)

@@ -10,7 +10,8 @@ from delone._base.arrays import as_workers
 from delone._base.counting import counted
 from delone._base.extras import require
 from delone._base.immutable import kept, sealed
-from delone.errors import DegenerateInputError, DtypeError, InputError
+from delone._base.numbers import as_positive
+from delone.errors import DegenerateInputError, DtypeError
 from delone.sphere.cells import Cells, cells_of
 from delone.sphere.circle import cells_of_few, first_rows, nearest_of_few
 from delone.sphere.clipping import (
@@ -200,7 +201,7 @@ class Voronoi(OnGlobe):
         degrees: bool = True,
         workers: int | None = None,
     ) -> None:
-        length = _as_radius(radius)
+        length = as_positive(radius, name="radius", finite=True)
         region = as_region(clip, winding, sides, degrees=degrees, workers=workers)
         vectors = directions_of(lonlat, xyz, degrees=degrees, workers=workers)
         self._fill(vectors, (length, region), degrees, workers)
@@ -249,7 +250,7 @@ class Voronoi(OnGlobe):
             raise DtypeError(f"mesh must be a sphere.Delaunay, got {type(mesh).__name__}")
         region = as_region(clip, winding, sides, degrees=mesh._degrees, workers=mesh.workers)
         made = cls.__new__(cls)
-        made._hold_dual(mesh, (_as_radius(radius), region))
+        made._hold_dual(mesh, (as_positive(radius, name="radius", finite=True), region))
         return made
 
     def _fill(self, vectors: Floats, options: Options, degrees: bool, workers: int | None) -> None:
@@ -633,14 +634,3 @@ class Voronoi(OnGlobe):
         from delone.sphere.picture import plot_diagram
 
         return plot_diagram(self, ax, points, options)
-
-
-def _as_radius(radius: Any) -> float:
-    """Return a radius, which must be positive and finite."""
-    try:
-        value = float(radius)
-    except (TypeError, ValueError):
-        raise DtypeError(f"radius must be a number, got {radius!r:.60}") from None
-    if not 0 < value < np.inf:
-        raise InputError(f"radius must be positive and finite, got {value!r:.80}")
-    return value

@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
-from delone._base.arrays import as_choice, as_least, as_number
+from delone._base.arrays import as_choice, as_least
+from delone._base.numbers import as_positive
 from delone.areal.paired import added
 from delone.areal.weights import AreaWeights, as_mask
 from delone.errors import InputError
-from delone.sphere.pointwise import POINTWISE, pointwise
+from delone.sphere.pointwise import POINTWISE, pointwise, refuse_neighbors
 
 if TYPE_CHECKING:
     import os
@@ -187,12 +188,9 @@ class Weights(AreaWeights):
         """
         kind = as_choice(method, POINTWISE, name="method")
         beyond = as_choice(extrapolate, ("nan", "nearest"), name="extrapolate")
-        exponent = as_number(power, name="power")
-        if not 0 < exponent < np.inf:
-            raise InputError(f"power must be positive and finite, got {power!r:.60}")
+        exponent = as_positive(power, name="power", finite=True)
         most = None if neighbors is None else as_least(neighbors, 1, name="neighbors")
-        if most is not None and kind != "inverse_distance":
-            raise InputError(f"neighbors is for inverse_distance, got {kind!r:.40}")
+        refuse_neighbors(most, kind)
         used = (
             as_mask(source_mask, source.grid_shape, "source_mask"),
             as_mask(target_mask, target.grid_shape, "target_mask"),
@@ -333,6 +331,13 @@ class Weights(AreaWeights):
         if order == 1:
             return cls._of(*parts)
         return SlopedWeights._of(*parts)
+
+    def _require_fit(self, grids: tuple[Grid | None, Grid | None]) -> None:
+        """Reject a source and a target, if given, with other numbers of cells."""
+        counts = len(self.source_fractions), len(self.fractions)
+        for name, grid, count in zip(("source", "target"), grids, counts, strict=True):
+            if grid is not None and grid.ncells != count:
+                raise InputError(f"{name} has {grid.ncells} cells, and the weights {count}")
 
 
 class SlopedWeights(Weights):

@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_choice, as_flag, as_number, as_points, as_workers, require_finite
+from delone._base.arrays import (
+    as_choice,
+    as_flag,
+    as_points,
+    as_workers,
+    require_finite,
+    wrong_shape,
+)
 from delone._base.georeference import (
     as_known_crs,
     caller_level,
@@ -20,6 +27,7 @@ from delone._base.georeference import (
     warn_of_degrees,
     warn_of_unknown,
 )
+from delone._base.numbers import as_nonnegative, as_positive
 from delone._base.units import (
     UnitsWarning,
     as_units,
@@ -31,7 +39,7 @@ from delone._base.units import (
 from delone._tiling.plane.topology import among, edge_keys, triangles_among
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.membership import inside
-from delone.errors import ConflictingValuesError, InputError, ShapeError
+from delone.errors import ConflictingValuesError, InputError
 from delone.terrain.adjustments import Adjustments, adjustments_of
 from delone.terrain.extent import Part, refuse_crossing_rings, within, without_outer
 from delone.terrain.gathering import LEVEL, SOFT, Lines, gathered
@@ -46,7 +54,6 @@ from delone.terrain.heights import (
 from delone.terrain.joining import joined
 from delone.terrain.leveling import Level, leveled, require_level
 from delone.terrain.lines import Ring, lines_of, rings_of
-from delone.terrain.merging import as_snap
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -112,10 +119,11 @@ def build(
     """
     as_choice(duplicates, POLICIES, name="duplicates")
     as_choice(crossing, POLICIES, name="crossing")
-    allowed, near = as_tolerance(tolerance), as_snap(snap)
-    limit = None if max_edge is None else as_number(max_edge, name="max_edge")
-    if limit is not None and not limit > 0:
-        raise InputError(f"max_edge must be above 0, got {max_edge!r:.80}")
+    allowed, near = (
+        as_nonnegative(value, name=name, finite=True)
+        for name, value in (("tolerance", tolerance), ("snap", snap))
+    )
+    limit = None if max_edge is None else as_positive(max_edge, name="max_edge")
     if as_flag(voids, name="voids") and limit is None:
         raise InputError("voids=True needs max_edge: longer edges span a void")
     points = _points_of(xyz)
@@ -206,14 +214,6 @@ def bare(
     return flat, np.ascontiguousarray(points[:, 2]), system, heights_in
 
 
-def as_tolerance(given: Any) -> float:
-    """Return the largest difference between heights that count as equal."""
-    found = as_number(given, name="tolerance")
-    if not 0 <= found < np.inf:
-        raise InputError(f"tolerance must be a difference of heights from 0 on, got {given!r:.60}")
-    return found
-
-
 def _heights(mesh: ConstrainedDelaunay, points: Floats, lines: Lines, **policies: Any) -> Floats:
     """Return the height of each row of a triangulation of points and lines."""
     count = len(points)
@@ -242,7 +242,7 @@ def _points_of(xyz: Any) -> Floats:
     else:
         found = as_points(xyz, name="xyz")
         if found.shape[1] != 3:
-            raise ShapeError(f"xyz must have shape (n, 3), got {found.shape}")
+            raise wrong_shape("xyz", "(n, 3)", found)
     require_finite(found, name="xyz")
     return found
 

@@ -11,15 +11,24 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import LARGEST_LIMIT, as_count, as_number, as_plain_array, as_workers
+from delone._base.arrays import (
+    LARGEST_LIMIT,
+    as_count,
+    as_number,
+    as_plain_array,
+    as_workers,
+    require_finite,
+)
 from delone._base.counting import counted
 from delone._base.decimals import exact, multiples
 from delone._base.extras import require
 from delone._base.immutable import ReadOnly, sealed
+from delone._base.numbers import as_nonnegative
 from delone._base.renames import renamed
+from delone._base.values import require_real
 from delone._tiling.complex import Filed
 from delone._tiling.plane import topology
-from delone.errors import BudgetExceededError, DtypeError, InputError
+from delone.errors import BudgetExceededError, InputError
 from delone.terrain.labeling import Labels, labels_of
 from delone.terrain.layer import Layer
 from delone.terrain.slivers import drawn
@@ -519,11 +528,10 @@ def levels_of(
         raise InputError("give either levels or an interval")
     if interval is None:
         given = as_plain_array(levels, "levels")
-        if given.dtype.kind not in "iuf":
-            raise DtypeError(f"levels must be real numbers, got dtype {given.dtype}")
-        found = np.unique(given.astype(np.float64))
-        if not np.isfinite(found).all():
-            raise InputError("levels must be finite")
+        require_real(given, "levels")
+        found = given.astype(np.float64).reshape(-1, 1)
+        require_finite(found, name="levels")
+        found = np.unique(found)
         return found, np.zeros(len(found), dtype=bool)
     step, start = as_number(interval, name="interval"), as_number(base, name="base")
     if not (0 < step < math.inf and math.isfinite(start)):
@@ -580,9 +588,9 @@ class Finish(NamedTuple):
         """Check the options."""
         return cls(
             as_count(smooth, name="smooth"),
-            _least(min_length, "min_length"),
-            _least(min_area, "min_area"),
-            _least(simplify, "simplify"),
+            as_nonnegative(min_length, name="min_length", finite=True),
+            as_nonnegative(min_area, name="min_area", finite=True),
+            as_nonnegative(simplify, name="simplify", finite=True),
         )
 
     @property
@@ -651,14 +659,6 @@ def _outline(sheet: Sheet) -> Floats:
     return sheet.points[topology.boundary_edges(sheet.simplices, sheet.neighbors)]
 
 
-def _least(given: float, name: str) -> float:
-    """Return the smallest size that is not left out."""
-    found = as_number(given, name=name)
-    if not 0 <= found < math.inf:
-        raise InputError(f"{name} must be finite and at least 0, got {given!r:.60}")
-    return found
-
-
 def _lengths(points: Floats, starts: Rows) -> Floats:
     """Return the lengths of lines, rounded."""
     steps = np.zeros(len(points))
@@ -705,7 +705,10 @@ def bands(tin: Surface, levels: Floats, min_area: float, simplify: float, max_po
     from delone.terrain.borders import simplified_borders
     from delone.terrain.holes import with_holes_inside
 
-    smallest, tolerance = _least(min_area, "min_area"), _least(simplify, "simplify")
+    smallest, tolerance = (
+        as_nonnegative(min_area, name="min_area", finite=True),
+        as_nonnegative(simplify, name="simplify", finite=True),
+    )
     made, _, left_out = _within(_core.contour_bands2, tin, levels, max_points, 1)
     used = tin.z[on_surface(tin)]
     ends = np.concatenate(([used.min()], levels, [used.max()]))

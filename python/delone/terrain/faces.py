@@ -13,6 +13,7 @@ import numpy as np
 from delone._base.arrays import as_choice
 from delone._base.counting import counted
 from delone._base.georeference import warn_of_degrees
+from delone._base.numbers import as_nonnegative
 from delone._tiling.plane import topology
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import CrossingSegmentsError, InputError
@@ -80,7 +81,7 @@ def build_faces(surface: SurfaceFile, options: dict[str, Any]) -> building.Built
         claims_of_points(np.empty(0, dtype=np.int32), np.empty(0)),
         duplicates=duplicates,
         crossing="raise",
-        tolerance=building.as_tolerance(options.get("tolerance", 0.0)),
+        tolerance=as_nonnegative(options.get("tolerance", 0.0), name="tolerance", finite=True),
     )
     kept = topology.triangles_among(mesh.simplices, faces)
     return building.compact(mesh, z, kept, building.is_soft(mesh, lines), system, units)

@@ -20,6 +20,7 @@ import numpy as np
 from delone._base.arrays import as_flag, as_least, as_number
 from delone._base.counting import agreed, counted
 from delone._base.immutable import ReadOnly, sealed
+from delone._base.numbers import as_nonnegative, as_positive
 from delone._base.units import METERS, lengths_of_crs
 from delone.dynamic.dynamic import Dynamic
 from delone.errors import InputError
@@ -262,13 +263,8 @@ def _limits(given: dict[str, Any], angle: Any, mirror: Any, unit: str | None) ->
     found = {}
     for name, value in given.items():
         default = _METERS[name] / METERS[unit or "m"]
-        found[name] = default if value is None else as_number(value, name=name)
-        least = name in ("cell", "distance", "low")
-        if not (0 < found[name] < np.inf or (found[name] == 0 and not least)):
-            raise InputError(
-                f"{name} must be finite and {'above 0' if least else 'from 0 on'}, got "
-                f"{value!r:.60}"
-            )
+        check = as_positive if name in ("cell", "distance", "low") else as_nonnegative
+        found[name] = check(default if value is None else value, name=name, finite=True)
     steep = as_number(angle, name="angle")
     if not 0 < steep < 90:
         raise InputError(f"angle must be between 0 and 90 degrees, got {angle!r:.60}")

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._base.arrays import as_plain_array, as_points, require_finite
+from delone._base.arrays import as_plain_array, as_points, require_finite, wrong_shape
 from delone._base.extras import require
 from delone._base.georeference import transformed
 from delone.constrained.geodata import is_shapely
-from delone.errors import InputError, ShapeError
+from delone.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -222,7 +222,7 @@ def _is_line(given: Any) -> bool:
 
 def _of_array(array: NDArray[Any], name: str) -> Floats:
     if array.ndim != 2 or array.shape[1] not in (2, 3):
-        raise ShapeError(f"{name}: a line must have shape (k, 2) or (k, 3), got {array.shape}")
+        raise wrong_shape(f"{name}: a line", "(k, 2) or (k, 3)", array)
     points = as_points(array, name=name)
     found = np.full((len(points), 3), np.nan)
     found[:, : points.shape[1]] = points

@@ -17,9 +17,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from delone._base.arrays import as_number
 from delone._base.counting import counted
-from delone.errors import BudgetExceededError, InputError
+from delone.errors import BudgetExceededError
 
 if TYPE_CHECKING:
     from typing import Any
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
 
     from delone._base.types import Bools, Floats, Rows
 
-__all__ = ["Moves", "as_snap", "merged", "near_segments", "onto"]
+__all__ = ["Moves", "merged", "near_segments", "onto"]
 
 # Maximum number of pairs of points in adjacent cells that are compared: about 2 GB.
 _MOST = 40_000_000
@@ -41,14 +40,6 @@ class Moves(NamedTuple):
 
     places: Floats  # (n, 2)
     moved: Bools
-
-
-def as_snap(given: Any) -> float:
-    """Return the distance below which points are merged."""
-    found = as_number(given, name="snap")
-    if not 0 <= found < np.inf:
-        raise InputError(f"snap must be a distance from 0 on, got {given!r:.60}")
-    return found
 
 
 def merged(places: Floats, order: NDArray[Any], limit: float, fixed: Bools | None = None) -> Moves:

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_number, as_points, require_finite
+from delone._base.arrays import as_number
 from delone._base.extras import require
 from delone._base.immutable import ReadOnly
 from delone._base.renames import renamed
 from delone._tiling import measures
-from delone.errors import InputError, ShapeError
+from delone._tiling.location import segment_ends
+from delone.errors import InputError
 from delone.terrain.lines import line_of
 
 if TYPE_CHECKING:
@@ -341,13 +342,7 @@ def _on(z: Floats, places: Floats) -> Floats:
 
 def sight(tin: Surface, a: ArrayLike, b: ArrayLike, height: float, target: float) -> Sight:
     """Return whether a target is visible from an observer."""
-    ends = []
-    for name, place in (("a", a), ("b", b)):
-        row = as_points(np.asarray(place)[None], ndim=2, name=name)
-        if row.shape != (1, 2):
-            raise ShapeError(f"{name} must be one point, got shape {np.shape(place)}")
-        require_finite(row, name=name)
-        ends.append(row)
+    ends = [end[None] for end in segment_ends(a, b)]
     places = np.concatenate(ends)
     above = [as_number(height, name="height"), as_number(target, name="target")]
     z = _on(tin.heights(places), places) + above

@@ -14,6 +14,7 @@ from delone._base.arrays import as_number, as_plain_array
 from delone._base.counting import counted
 from delone._base.extras import require
 from delone._base.immutable import ReadOnly, sealed
+from delone._base.numbers import as_finite, as_positive
 from delone.errors import BudgetExceededError, DtypeError, InputError
 from delone.terrain.layer import Layer
 from delone.terrain.lines import line_of
@@ -491,8 +492,7 @@ def _stations(
     """Return distances from the start of an alignment."""
     if (interval is None) == (stations is None):
         raise InputError("give either an interval or stations")
-    if not math.isfinite(origin):
-        raise InputError(f"start must be finite, got {origin}")
+    as_finite(origin, name="start")
     if stations is not None:
         given = as_plain_array(stations, "stations")
         if given.ndim != 1 or given.dtype.kind not in "iuf":
@@ -508,9 +508,7 @@ def _stations(
         if not len(at):
             raise InputError("stations is empty")
         return np.clip(at, 0.0, length)
-    step = math.nan if interval is None else as_number(interval, name="interval")
-    if not 0 < step < math.inf:
-        raise InputError(f"interval must be above 0 and finite, got {interval!r:.60}")
+    step = as_positive(interval, name="interval", finite=True)
     if not length / step < _STATIONS:
         raise BudgetExceededError(
             f"an interval of {step:g} gives {length / step:.3g} stations on {length:.6g}; at most "

@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_choice, as_least, as_number, as_workers
+from delone._base.arrays import as_choice, as_least, as_workers
 from delone._base.counting import counted
 from delone._base.immutable import ReadOnly
+from delone._base.numbers import as_nonnegative
 from delone._tiling.plane.topology import among, edge_keys
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import InputError
@@ -222,12 +223,7 @@ def as_goal(max_error: Any, max_triangles: Any) -> tuple[float, int]:
         raise InputError("give one of max_error and max_triangles")
     if max_triangles is not None:
         return 0.0, min(as_least(max_triangles, 1, name="max_triangles"), _MOST - 1)
-    error = as_number(max_error, name="max_error")
-    if not 0 <= error < math.inf:
-        raise InputError(
-            f"max_error must be a difference of heights from 0 on, got {max_error!r:.60}"
-        )
-    return error, _MOST
+    return as_nonnegative(max_error, name="max_error", finite=True), _MOST
 
 
 def ground_of(tin: Surface, keep: str) -> Ground:

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._base.arrays import as_callback, as_choice, as_number, as_queries
+from delone._base.arrays import as_callback, as_choice, as_queries
+from delone._base.numbers import as_between, as_finite, as_nonnegative
 from delone._tiling import measures
-from delone._tiling.location import as_tolerance
 from delone.errors import InputError
 from delone.interpolate.raster import Grid, raster_nodes, require_memory
 from delone.terrain.surface import on_surface
@@ -90,14 +90,10 @@ def aspect(slopes: Floats) -> Floats:
 def hillshade(slopes: Floats, azimuth: float, altitude: float, z_factor: float) -> Floats:
     """Return the cosines between normals and light, 0 where they face away."""
     numbers = {
-        name: as_number(value, name=name)
+        name: as_finite(value, name=name)
         for name, value in zip(_LIGHT, (azimuth, altitude, z_factor), strict=True)
     }
-    for name, value in numbers.items():
-        if not np.isfinite(value):
-            raise InputError(f"{name} must be finite, got {value}")
-    if not 0 <= numbers["altitude"] <= 90:
-        raise InputError(f"altitude must be between 0 and 90 degrees, got {altitude}")
+    as_between(altitude, 0, 90, name="altitude (degrees)")
     around, above = np.radians(numbers["azimuth"]), np.radians(numbers["altitude"])
     light = np.array(
         (np.cos(above) * np.sin(around), np.cos(above) * np.cos(around), np.sin(above))
@@ -135,7 +131,7 @@ def raster(tin: Surface, what: str, options: dict[str, Any]) -> Grid:
         if name in options and what == "hillshade":
             light[name] = options.pop(name)
     tell = as_callback(options.pop("progress", None), name="progress")
-    tolerance = as_tolerance(options.pop("tolerance", 0.0))
+    tolerance = as_nonnegative(options.pop("tolerance", 0.0), name="tolerance")
     x, y = _nodes(tin, options)
     require_memory(len(x), len(y), 1)
     values = np.empty((len(y), len(x)))

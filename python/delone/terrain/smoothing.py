@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from delone._base.arrays import as_index
 from delone.constrained.delaunay import ConstrainedDelaunay
-from delone.errors import CrossingSegmentsError, InputError
+from delone.errors import CrossingSegmentsError
 
 if TYPE_CHECKING:
     from delone._base.types import Bools, Floats, Rows
@@ -31,8 +32,7 @@ def smoothed(points: Floats, starts: Rows, tin: Surface | None, rounds: int) -> 
 
     Corners on hard breaklines of the surface, if there is one, are kept.
     """
-    if rounds > _MOST_ROUNDS:
-        raise InputError(f"smooth must be at most {_MOST_ROUNDS}, got {rounds}")
+    as_index(rounds, 0, _MOST_ROUNDS, name="smooth")
     if not len(points):
         return points, starts
     sharp = np.array(_repeated(points, starts))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone._base.arrays import as_flag
+from delone._base.files import no_curves
 from delone._tiling.triangulation import HullTiling
 from delone.errors import InputError
 from delone.terrain import building, simplifying, slopes
@@ -186,7 +187,7 @@ class Sources(HullTiling):
             found = io.read_surface(path, layer=layer, order=order, chord=chord)
             return cls.from_surface(found, **options)
         if chord is not None:
-            raise InputError(f"{path}: chord is for DXF files, which have curves")
+            raise no_curves(path)
         if order is not None:
             raise InputError(f"{path}: order is for LandXML files; name the columns")
         survey = io.read_points(path, columns=columns, layer=layer, bounds=bounds)

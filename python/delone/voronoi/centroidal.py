@@ -22,7 +22,8 @@ import numpy as np
 
 from delone._base.arrays import as_callback, as_choice, as_limit, as_number
 from delone._base.immutable import ReadOnly
-from delone.errors import DtypeError, InputError
+from delone._base.values import require_real
+from delone.errors import InputError
 from delone.voronoi import outline
 from delone.voronoi.diagram import Voronoi
 
@@ -383,8 +384,7 @@ def _state(diagram: Voronoi, density: Density | None) -> _State:
 
 def _density(density: Density, places: Floats) -> Floats:
     given = np.asarray(density(places))
-    if given.dtype.kind not in "biuf":
-        raise DtypeError(f"density must return real numbers, got dtype {given.dtype}")
+    require_real(given, "what density returns", kinds="biuf")
     values = given.astype(np.float64)
     if values.shape != (len(places),):
         raise InputError(f"density returned shape {values.shape} for {len(places)} places")

@@ -14,6 +14,7 @@ from delone._tiling.higher.dual import DiagramN, dual
 from delone.delaunay import Delaunay
 from delone.errors import InputError
 from delone.voronoi.cells import Cells
+from delone.voronoi.sites import refuse_periods
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -52,8 +53,7 @@ class HigherCells(Cells):
             raise InputError("a clip is only available in 2-D and 3-D")
         if weights is not None:
             raise InputError("weights are only available in 2-D and 3-D")
-        if periods is not None:
-            raise InputError("periods are only available in 2-D")
+        refuse_periods(periods)
         mesh = Delaunay(points, workers=workers, planar=True)
         arrays = of_mesh(mesh)
         duplicate, first = mesh._duplicates.T

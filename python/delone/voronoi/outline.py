@@ -208,7 +208,7 @@ def _of_mapping(mapping: Any) -> Any:
     except Exception as error:
         if isinstance(error, InputError):
             raise
-        raise InputError(f"clip {mapping!r:.80} is not a geometry: {error}") from error
+        raise _no_geometry(mapping, error) from error
 
 
 def _typed(mapping: Any) -> Any:
@@ -216,8 +216,12 @@ def _typed(mapping: Any) -> Any:
     kind = mapping.get("type") if isinstance(mapping, dict) else None
     if not isinstance(kind, str):
         why = "it has no type" if kind is None else f"its type is {kind!r:.40}"
-        raise InputError(f"clip {mapping!r:.80} is not a geometry: {why}")
+        raise _no_geometry(mapping, why)
     return mapping
+
+
+def _no_geometry(mapping: Any, why: object) -> InputError:
+    return InputError(f"clip {mapping!r:.80} is not a geometry: {why}")
 
 
 def _box(numbers: Any) -> Clip:

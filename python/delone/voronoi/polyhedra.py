@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._base.arrays import as_vectors
+from delone._base.arrays import as_vectors, require_finite
 from delone._tiling.space.geometry import face_normals
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, DeloneError, InputError
@@ -96,8 +96,7 @@ def as_polyhedron(clip: Any, points: Floats) -> Polyhedron | None:
         array = as_vectors(clip, shape[-1] if shape else 0, name="clip")
     except (DeloneError, ValueError) as error:
         raise InputError(f"{_CHOICES}; {error}") from error
-    if not np.isfinite(array).all():
-        raise InputError("clip must be finite")
+    require_finite(np.atleast_2d(array), name="clip")
     if shape in ((2, 3), (6,)):
         return _box(array.reshape(2, 3))
     if len(shape) == 2 and shape[1] == 4:

@@ -10,7 +10,7 @@ from delone import _core
 from delone._base.arrays import as_workers
 from delone._base.duplicates import first_rows
 from delone.delaunay import Delaunay
-from delone.errors import DegenerateInputError
+from delone.errors import DegenerateInputError, InputError
 from delone.periodic import PeriodicDelaunay, as_periods, vertex_of
 from delone.regular import RegularTriangulation, triangulated
 from delone.voronoi import dual, torus
@@ -62,6 +62,12 @@ def _regular(
     duplicate, first = found["duplicates"].T
     arrays.region[duplicate] = arrays.region[first]
     return mesh, arrays
+
+
+def refuse_periods(periods: Any) -> None:
+    """Reject periods of cells that are not in 2-D."""
+    if periods is not None:
+        raise InputError("periods are only available in 2-D")
 
 
 def repeated(

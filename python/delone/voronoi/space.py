@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone.errors import InputError
 from delone.exchange.polyhedra import polyhedra_to_meshio, polyhedra_to_pyvista
 from delone.voronoi import polyhedra, sites
 from delone.voronoi.bodies import Bodies, Body
 from delone.voronoi.cells import Cells
 from delone.voronoi.results import PolyhedralCell, Rays
 from delone.voronoi.rows import from_the_gap
+from delone.voronoi.sites import refuse_periods
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -57,8 +57,7 @@ class SpaceCells(Cells):
         workers: int | None,
     ) -> Self:
         """Return the cells of sites, for the arguments of `delone.Voronoi`."""
-        if periods is not None:
-            raise InputError("periods are only available in 2-D")
+        refuse_periods(periods)
         mesh, arrays = sites.in_space(points, weights, workers)
         where = polyhedra.as_polyhedron(clip, points)
         return cls(

@@ -13,6 +13,7 @@ import numpy as np
 
 from delone._base.atomic import replacing
 from delone._base.bounded import archived, pieces
+from delone._base.files import not_a_path, not_regular
 from delone._tiling.archive.checks import ContradictionError, require
 from delone._tiling.archive.kinds import KINDS, Kind
 from delone.errors import FileFormatError
@@ -44,7 +45,7 @@ def read(path: str | os.PathLike[str], name: str) -> dict[str, NDArray[Any]]:
     source = _path(path)
     # Opening a pipe would block until something writes to it.
     if source.exists() and not source.is_file() and not source.is_dir():
-        raise OSError(f"{source} is not a regular file")
+        raise not_regular(source)
     with source.open("rb") as file:
         return _parsed(file, source, KINDS[name])
 
@@ -53,8 +54,7 @@ def _path(path: str | os.PathLike[str]) -> Path:
     try:
         return Path(path)
     except TypeError:
-        kind = type(path).__name__
-        raise TypeError(f"path must be a string or a path-like object, got {kind}") from None
+        raise not_a_path(path, "path") from None
 
 
 def _parsed(file: IO[bytes], path: Path, kinds: tuple[Kind, ...]) -> dict[str, NDArray[Any]]:

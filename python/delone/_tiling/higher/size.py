@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_number
 from delone._base.counting import gigabytes, grouped
-from delone.errors import DegenerateInputError, InputError
+from delone._base.numbers import as_positive
+from delone.errors import DegenerateInputError
 from delone.memory import TooLargeError, free_memory
 
 if TYPE_CHECKING:
@@ -79,10 +79,7 @@ def require_room(points: Floats, max_bytes: int | None, *, hull: bool = False) -
 
 
 def _as_bytes(max_bytes: Any) -> int:
-    value = as_number(max_bytes, name="max_bytes")
-    if not value > 0:
-        raise InputError(f"max_bytes must be positive, got {max_bytes!r:.80}")
-    return int(min(value, 2.0**63))
+    return int(min(as_positive(max_bytes, name="max_bytes"), 2.0**63))
 
 
 def sample_size(size: int, d: int, *, hull: bool = False) -> int:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._base.arrays import as_count
+from delone._base.arrays import as_index
 from delone.distributed.arguments import as_path
 from delone.distributed.pure.tiles import Tiles
 from delone.distributed.read.tile import Tile, read_tile
@@ -121,9 +121,7 @@ class TileFolder:
         >>> int(tile.owned.sum()), len(tile.points) > 100
         (100, True)
         """
-        number = as_count(number, name="number")
-        if not 0 <= number < self.ntiles:
-            raise InputError(f"tile must be from 0 to {self.ntiles - 1}, got {number}")
+        number = as_index(number, 0, self.ntiles - 1, name="number")
         tile = read_tile(self.store, self.manifest, number)
         known = self.manifest["tiles"][number]
         wanted = known["points"] + known["foreign"], known["triangles"]

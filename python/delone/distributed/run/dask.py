@@ -111,13 +111,16 @@ class DaskExecutor:
             if self.client.status == "running":
                 left = time.monotonic()
             elif time.monotonic() - left > _PATIENCE:
-                raise ConnectionError(f"the client is {self.client.status}")
+                self._require_scheduler()
             time.sleep(_GLANCE)
+
+    def _require_scheduler(self) -> None:
+        if self.client.status != "running":
+            raise ConnectionError(f"the client is {self.client.status}")
 
     def _submit(self, root: str, stage: str, key: int, arguments: Sequence[Any]) -> Any:
         """Submit a task to the scheduler."""
-        if self.client.status != "running":
-            raise ConnectionError(f"the client is {self.client.status}")
+        self._require_scheduler()
         return self.client.submit(perform, root, stage, key, arguments, pure=False)
 
     def _lost(self) -> tuple[type[BaseException], ...]:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from delone._base.arrays import as_points
+from delone._base.files import existing
 from delone.distributed.pure.rows import make_rows
 from delone.errors import FileFormatError, InputError
 from delone.io import PointSet, las, parquet, read_points
@@ -116,8 +117,7 @@ def find(source: Given, choice: Choice) -> Source:
     count = 0
     files: list[list[str | int]] = []
     for path in paths:
-        if not path.exists():
-            raise FileNotFoundError(f"{path}: no such file")
+        existing(path)
         # Before the scan, so that changes during it are detected later.
         stamp = _stamp(path)
         files.append([os.path.abspath(path), *stamp])
@@ -184,10 +184,6 @@ def _matching(part: str | os.PathLike[str]) -> list[Path]:
 def _look(path: Path, choice: Choice) -> tuple[str, int, str | None, bool]:
     """Kind, rows and reference system of a file, and whether it has heights."""
     suffix = path.suffix.lower()
-    if not path.is_file():
-        raise FileFormatError(f"{path} is a pipe or device; write its contents to a file first")
-    if path.stat().st_size == 0:
-        raise FileFormatError(f"{path} is empty")
     if suffix in _LAS:
         if choice.columns is not None:
             raise FileFormatError(f"{path}: LAS files always have the coordinates x, y and z")

@@ -139,7 +139,7 @@ class Store:
         except FileNotFoundError:
             return None
         except (ValueError, RecursionError) as error:
-            raise FileFormatError(f"{self.path(name)} is truncated: {error}") from error
+            raise FileFormatError(f"{self.path(name)} is truncated or not JSON: {error}") from error
         if found is None:
             raise FileFormatError(f"{self.path(name)} is corrupt: it contains null")
         return found

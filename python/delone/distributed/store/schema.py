@@ -132,7 +132,7 @@ def _record(fields: Mapping[str, Check]) -> Check:
         for name, check in fields.items():
             inner = f"{field}.{name}" if field else name
             if name not in value:
-                raise _WrongFieldError(f"{inner} is missing")
+                raise _WrongFieldError(f"the field {inner} is missing")
             check(value[name], inner)
 
     return each

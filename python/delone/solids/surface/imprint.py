@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_number, as_workers
+from delone._base.arrays import as_workers
 from delone._base.counting import counted, listed
 from delone._base.immutable import ReadOnly
-from delone.errors import CrossingFacesError, InputError
+from delone._base.numbers import as_nonnegative
+from delone.errors import CrossingFacesError
 from delone.solids.surface.check import as_faces
 
 if TYPE_CHECKING:
@@ -176,7 +177,7 @@ def imprint_surface(
     (0.0, 2)
     """
     given, rows = as_faces(points, faces)
-    margin = 0.0 if tolerance is None else as_tolerance(tolerance)
+    margin = 0.0 if tolerance is None else as_nonnegative(tolerance, name="tolerance", finite=True)
     made = _core.imprint_surface3(given, rows, margin, as_workers(workers))
     if len(made.crossing):
         raise _failure(made.crossing.astype(np.int64), made.tolerance, made.rounds)
@@ -194,14 +195,6 @@ def imprint_surface(
         collapsed=np.flatnonzero(parts == 0),
         nfaces=len(rows),
     )
-
-
-def as_tolerance(tolerance: float) -> float:
-    """Return a distance, which must be finite and at least 0."""
-    found = as_number(tolerance, name="tolerance")
-    if not 0 <= found < np.inf:
-        raise InputError(f"tolerance must be finite and at least 0, got {found}")
-    return found
 
 
 def _failure(pairs: Rows, tolerance: float, rounds: int) -> CrossingFacesError:

@@ -15,12 +15,12 @@ from delone._base.arrays import (
     as_choice,
     as_flag,
     as_limit,
-    as_plain_array,
     as_points,
     as_simplices,
     require_finite,
 )
 from delone._base.counting import agreed, counted
+from delone._base.values import as_labels
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.solids.tetmesh import improving, walls
 from delone.solids.tetmesh.relaxing import mesh_of
@@ -251,11 +251,4 @@ def _require_positive(points: Floats, simplices: Indices) -> None:
 def _labels(region: ArrayLike | None, own: Indices | None, count: int) -> Indices:
     if region is None:
         return np.empty(0, dtype=np.int32) if own is None else own
-    array = as_plain_array(region, "region")
-    if array.dtype.kind not in "iu":
-        raise DtypeError(f"region must be integers, got dtype {array.dtype}")
-    if array.shape != (count,):
-        raise ShapeError(f"region must have shape ({count},), got {array.shape}")
-    if array.size and (array.min() < -_INDEX_MAX or array.max() > _INDEX_MAX):
-        raise InputError("region must be 32-bit integers")
-    return np.ascontiguousarray(array, dtype=np.int32)
+    return as_labels(region, count, name="region")

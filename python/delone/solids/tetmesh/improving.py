@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_number, as_plain_array
+from delone._base.numbers import as_between
+from delone._base.values import as_marks
 from delone._tiling.space import quality
-from delone.errors import DtypeError, InputError, ShapeError
+from delone.errors import InputError, ShapeError
 from delone.solids.tetmesh import report
 from delone.solids.tetmesh.report import Changed
 
@@ -31,32 +32,14 @@ _LARGEST_GOAL = 70.528
 
 def as_goal(value: float) -> float:
     """Return a goal for the smallest dihedral angle."""
-    goal = as_number(value, name="min_angle")
-    if not 0 <= goal <= _LARGEST_GOAL:
-        raise InputError(f"min_angle must be from 0 to {_LARGEST_GOAL}, got {value!r:.80}")
-    return goal
+    return as_between(value, 0, _LARGEST_GOAL, name="min_angle")
 
 
 def as_held(fixed: ArrayLike | None, count: int) -> Bools:
     """Return the mask of points that must not move; empty for None."""
     if fixed is None:
         return np.empty(0, dtype=bool)
-    array = as_plain_array(fixed, "fixed")
-    if array.dtype == bool:
-        if array.shape != (count,):
-            raise ShapeError(f"fixed must have shape ({count},), got {array.shape}")
-        return np.ascontiguousarray(array)
-    held = np.zeros(count, dtype=bool)
-    if array.shape == (0,):
-        return held
-    if array.dtype.kind not in "iu":
-        raise DtypeError(f"fixed must be a mask or rows of points, got dtype {array.dtype}")
-    if array.ndim != 1:
-        raise ShapeError(f"fixed must be 1-D, got shape {array.shape}")
-    if array.min() < 0 or array.max() >= count:
-        raise InputError(f"fixed must be rows of points, from 0 to {count - 1}")
-    held[array] = True
-    return held
+    return as_marks(fixed, count, name="fixed", of="points")
 
 
 class Points(NamedTuple):

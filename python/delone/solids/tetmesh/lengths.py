@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._tiling.sizes import checked, evaluator, is_number, positive, rounded
-from delone.errors import BudgetExceededError, InputError
+from delone._base.numbers import as_positive
+from delone._tiling.sizes import checked, evaluator, is_number, require_region, rounded
+from delone.errors import BudgetExceededError
 
 if TYPE_CHECKING:
     from delone._base.types import Floats, Indices
@@ -78,15 +79,11 @@ class Lengths:
         if given is None:
             return
         if not isinstance(given, Mapping):
-            self._everywhere = min(self._everywhere, length(positive(given, name)))
+            self._everywhere = min(self._everywhere, length(as_positive(given, name=name)))
             return
         for region, value in given.items():
-            if region not in known:
-                first = ", ".join(map(str, sorted(known)[:10]))
-                raise InputError(
-                    f"{name}: there is no region {region!r:.80}; the regions are {first}"
-                )
-            own = length(positive(value, f"{name} of region {region}"))
+            require_region(region, known, name)
+            own = length(as_positive(value, name=f"{name} of region {region}"))
             self._by_region[region] = min(self._by_region.get(region, math.inf), own)
 
     @property

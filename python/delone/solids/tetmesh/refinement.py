@@ -15,6 +15,7 @@ from delone import _core
 from delone._base.arrays import as_callback, as_choice, as_limit, as_number
 from delone._base.counting import agreed, counted, listed
 from delone._base.immutable import ReadOnly
+from delone._base.numbers import as_share
 from delone._tiling.sizes import chosen
 from delone._tiling.space.locking import sides
 from delone._tiling.space.topology import FACES
@@ -191,9 +192,7 @@ def as_bounds(
     progress: Callable[[int], object] | None,
 ) -> Bounds:
     """Return checked arguments; sizes are checked with the mesh."""
-    share = as_number(ratio, name="ratio")
-    if not 0 < share <= 1:
-        raise InputError(f"ratio must be above 0 and at most 1, got {ratio!r:.80}")
+    share = as_share(ratio, name="ratio")
     bound = np.inf if radius_edge is None else as_number(radius_edge, name="radius_edge")
     if not bound >= 1:
         raise InputError(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from delone._base.arrays import as_limit, as_plain_array, as_points, as_workers, require_finite
-from delone.errors import DtypeError, InputError, ShapeError
+from delone._base.values import as_labels
 from delone.solids.surface.check import as_faces
 from delone.solids.tetrahedra.seeds import as_hole_seeds, as_region_seeds
 
@@ -55,7 +55,7 @@ def task(
     return Task(
         points=points,
         faces=faces,
-        markers=_as_markers(surface.markers, len(faces)),
+        markers=as_labels(surface.markers, len(faces), name="face_markers"),
         holes=as_hole_seeds(surface.holes),
         regions=regions,
         labels=labels,
@@ -72,16 +72,3 @@ def _as_extra(points: ArrayLike | None) -> Floats:
     found = as_points(array, ndim=3, name="extra_points")
     require_finite(found, name="extra_points")
     return found
-
-
-def _as_markers(markers: ArrayLike | None, count: int) -> Indices:
-    if markers is None:
-        return np.zeros(count, dtype=np.int32)
-    array = as_plain_array(markers, "face_markers")
-    if array.dtype.kind not in "iu":
-        raise DtypeError(f"face_markers must be integers, got dtype {array.dtype}")
-    if array.shape != (count,):
-        raise ShapeError(f"face_markers must have shape ({count},), got {array.shape}")
-    if array.size and (array.min() < -(2**31) or array.max() >= 2**31):
-        raise InputError("face_markers must be 32-bit integers")
-    return np.ascontiguousarray(array, dtype=np.int32)

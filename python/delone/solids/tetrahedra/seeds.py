@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_plain_array, as_points, as_workers, require_finite
+from delone._base.arrays import as_plain_array, as_points, as_workers, require_finite, wrong_shape
 from delone._base.counting import agreed, counted, listed
 from delone._tiling.space.topology import FACES
-from delone.errors import InputError, ShapeError
+from delone.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -53,7 +53,7 @@ def _as_rows(seeds: ArrayLike | None, name: str, columns: tuple[int, ...]) -> Fl
         return np.empty((0, 3))
     if array.ndim != 2 or array.shape[1] not in columns:
         wanted = " or ".join(f"(k, {n})" for n in columns)
-        raise ShapeError(f"{name} must have shape {wanted}, got {array.shape}")
+        raise wrong_shape(name, wanted, array)
     # The conversion takes two or three columns.
     place = as_points(array[:, :3], ndim=3, name=name)
     require_finite(place, name=name)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.arrays import wrong_shape
 from delone.errors import InputError, ShapeError
 from delone.sphere.formats.cells import Cells, flags_of
 from delone.sphere.formats.variables import in_degrees, numbers, padded, places
@@ -60,7 +61,7 @@ def read_scrip(variables: Variables, choices: Choices) -> Cells:
     names = "grid_corner_lon", "grid_corner_lat"
     lon, lat = (numbers(variables[name], name) for name in names)
     if lon.ndim != 2:
-        raise ShapeError(f"{names[0]} must have shape (grid_size, grid_corners), got {lon.shape}")
+        raise wrong_shape(names[0], "(grid_size, grid_corners)", lon)
     count = len(lon)
     shape: tuple[int, ...] = (count,)
     dims = variables.get("grid_dims")
@@ -153,7 +154,7 @@ def read_geos(variables: Variables, choices: Choices) -> Cells:
     names = "corner_lons", "corner_lats"
     lon, lat = (numbers(variables[name], name) for name in names)
     if lon.ndim != 3 or min(lon.shape[1:]) < 2:
-        raise ShapeError(f"corner_lons must have shape (6, j + 1, i + 1), got {lon.shape}")
+        raise wrong_shape("corner_lons", "(6, j + 1, i + 1)", lon)
     degrees = [
         in_degrees(variables[name], axis, name, choices, fixed=True)
         for axis, name in enumerate(names)
@@ -180,7 +181,7 @@ def read_icon_corners(variables: Variables, choices: Choices) -> Cells:
     names = "clon_vertices", "clat_vertices"
     lon, lat = (numbers(variables[name], name) for name in names)
     if lon.ndim != 2:
-        raise ShapeError(f"clon_vertices must have shape (cell, 3), got {lon.shape}")
+        raise wrong_shape("clon_vertices", "(cell, 3)", lon)
     return Cells(
         format="ICON",
         dims=variables[names[0]].dims[:1],

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._base.arrays import wrong_shape
 from delone.errors import InputError, ShapeError
 from delone.interpolate.places import is_angle
 from delone.sphere.formats.cells import Cells, flags_of
@@ -16,6 +17,7 @@ from delone.sphere.formats.variables import (
     numbers,
     places,
     ragged,
+    required,
 )
 
 if TYPE_CHECKING:
@@ -41,11 +43,8 @@ def _nodes(
     variables: Variables, names: tuple[str, str], choices: Choices, *, fixed: bool | None = None
 ) -> Floats:
     """Return the vectors of nodes from their longitudes and latitudes."""
-    for name in names:
-        if name not in variables:
-            raise InputError(f"the dataset has no variable {name!r:.60}")
     degrees = [
-        in_degrees(variables[name], axis, name, choices, fixed=fixed)
+        in_degrees(required(variables, name), axis, name, choices, fixed=fixed)
         for axis, name in enumerate(names)
     ]
     lon, lat = (numbers(variables[name], name) for name in names)
@@ -166,7 +165,7 @@ def read_esmf(variables: Variables, choices: Choices) -> Cells:
     given = variables["nodeCoords"]
     both = numbers(given, "nodeCoords")
     if both.ndim != 2 or both.shape[1] != 2:
-        raise ShapeError(f"nodeCoords must have shape (n, 2), got {both.shape}")
+        raise wrong_shape("nodeCoords", "(n, 2)", both)
     known = in_degrees(given, 0, "nodeCoords", choices)
     names = "nodeCoords[:, 0]", "nodeCoords[:, 1]"
     vectors = places(both[:, 0], both[:, 1], (known, known), names, choices)
@@ -210,7 +209,7 @@ def read_icon(variables: Variables, choices: Choices) -> Cells:
     centers = variables.get("clon")
     along = None if centers is None or centers.ndim != 1 else centers.dims[0]
     if table.ndim != 2 or 3 not in table.shape:
-        raise ShapeError(f"vertex_of_cell must have shape (3, cell), got {table.shape}")
+        raise wrong_shape("vertex_of_cell", "(3, cell)", table)
     # The axis of cells is that of their centers; without centers, the order is (3, cell).
     transposed = table.dims[0] != along and table.shape[0] == 3
     cells = connected(table, "vertex_of_cell", len(vectors), start=1, transposed=transposed)
@@ -233,7 +232,7 @@ def read_fesom_diagnostics(variables: Variables, choices: Choices) -> Cells:
     given = variables["nodes"]
     both = numbers(given, "nodes")
     if both.ndim != 2 or both.shape[0] != 2:
-        raise ShapeError(f"nodes must have shape (2, n), got {both.shape}")
+        raise wrong_shape("nodes", "(2, n)", both)
     known = in_degrees(given, 0, "nodes", choices, fixed=False)
     vectors = places(both[0], both[1], (known, known), ("nodes[0]", "nodes[1]"), choices)
     cells, dims = _three(variables, "elements", len(vectors))

@@ -13,7 +13,7 @@ from delone.sphere.boxes import as_boxes
 from delone.sphere.coordinates import units_of
 from delone.sphere.formats.cells import Cells
 from delone.sphere.formats.corners import listed
-from delone.sphere.formats.variables import attribute, in_degrees, numbers, places
+from delone.sphere.formats.variables import attribute, in_degrees, numbers, places, required
 from delone.sphere.healpix import healpix_corners
 from delone.sphere.rings import BEYOND, as_bounds, voronoi
 from delone.sphere.voronoi import Voronoi
@@ -51,9 +51,7 @@ def centers(variables: Variables, choices: Choices) -> Pair | None:
         for ending in _ENDINGS:
             usable.pop(f"{name}{ending}", None)
     if choices.name is not None:
-        if choices.name not in variables:
-            raise InputError(f"the dataset has no variable {choices.name!r:.60}")
-        along = set(variables[choices.name].dims)
+        along = set(required(variables, choices.name).dims)
         usable = {n: p for n, p in usable.items() if p.ndim and set(p.dims) <= along}
     known = [[n for n, p in usable.items() if is_angle(p, axis)] for axis in (0, 1)]
     if max(map(len, known)) > 1:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone._base.counting import agreed, counted
+from delone._base.values import require_real
 from delone.errors import DirectionError, DtypeError, InputError, NonFiniteError, ShapeError
 from delone.interpolate.places import unit_of
 from delone.sphere.coordinates import directions_of
@@ -26,6 +27,7 @@ __all__ = [
     "padded",
     "places",
     "ragged",
+    "required",
     "variables_of",
 ]
 
@@ -77,9 +79,20 @@ def in_degrees(
 def numbers(variable: Any, name: str) -> NDArray[Any]:
     """Return the real numbers of a variable."""
     values = np.asarray(variable.values)
-    if values.dtype.kind not in "iuf":
-        raise DtypeError(f"{name} must have real numbers, got {values.dtype}")
+    require_real(values, name)
     return values
+
+
+def _require_same_shape(lon: NDArray[Any], lat: NDArray[Any], names: tuple[str, str]) -> None:
+    if lon.shape != lat.shape:
+        raise ShapeError(f"{names[0]} has shape {lon.shape}, and {names[1]} {lat.shape}")
+
+
+def required(variables: dict[str, Any], name: str) -> Any:
+    """Return a variable of a dataset."""
+    if name not in variables:
+        raise InputError(f"the dataset has no variable {name!r:.60}")
+    return variables[name]
 
 
 def places(
@@ -90,8 +103,7 @@ def places(
     choices: Choices,
 ) -> Floats:
     """Return the vectors of longitudes and latitudes, (n, 3)."""
-    if lon.shape != lat.shape:
-        raise ShapeError(f"{names[0]} has shape {lon.shape}, and {names[1]} {lat.shape}")
+    _require_same_shape(lon, lat, names)
     one, two = lon.ravel(), lat.ravel()
     if degrees[0] != degrees[1]:
         one, two = (
@@ -128,8 +140,7 @@ def padded(lon: NDArray[Any], lat: NDArray[Any], names: tuple[str, str]) -> tupl
 
     NaN after the last corner of a cell is padding.
     """
-    if lon.shape != lat.shape:
-        raise ShapeError(f"{names[0]} has shape {lon.shape}, and {names[1]} {lat.shape}")
+    _require_same_shape(lon, lat, names)
     absent = np.isnan(lon) & np.isnan(lat)
     return _trailing(absent, names[0])
 

@@ -1,0 +1,119 @@
+"""What errors say about files: that they are missing, truncated, or without what is needed."""
+
+from __future__ import annotations
+
+import json
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from delone.errors import DeloneError, DtypeError, FileFormatError, InputError
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Callable, Iterator
+
+__all__ = [
+    "corrupt",
+    "cut_short",
+    "existing",
+    "loaded",
+    "no_curves",
+    "no_folder",
+    "no_layers",
+    "not_a_path",
+    "not_regular",
+    "reading_as",
+    "require_there",
+    "unread",
+    "without",
+]
+
+
+def existing(path: str | os.PathLike[str]) -> Path:
+    """Return the path of a file that exists and is not empty."""
+    file = Path(path)
+    require_there(file)
+    if file.is_dir():
+        raise FileFormatError(no_folder(file))
+    if not file.is_file():
+        # Files are read twice: their format and sizes are checked before they are read.
+        raise FileFormatError(f"{file} is a pipe or device; write its contents to a file first")
+    if file.stat().st_size == 0:
+        raise FileFormatError(f"{file} is empty")
+    return file
+
+
+def require_there(path: Path) -> None:
+    """Reject a name that does not exist."""
+    if not path.exists():
+        raise FileNotFoundError(f"{path}: no such file")
+
+
+def no_folder(path: object) -> str:
+    """Return what is said of a folder that is given in place of a file."""
+    return f"{path} is a folder, not a file"
+
+
+def not_regular(path: object) -> OSError:
+    """Return the error for a pipe or a device."""
+    return OSError(f"{path} is not a regular file")
+
+
+def not_a_path(path: object, name: str) -> DtypeError:
+    """Return the error for anything but the name of a file or folder."""
+    return DtypeError(f"{name} must be a string or a path-like object, got {path!r:.60}")
+
+
+def no_curves(path: Path) -> InputError:
+    """Return the error for a distance of chords from curves in a format without curves."""
+    return InputError(f"{path}: chord is for DXF files, which have curves")
+
+
+def no_layers(path: Path) -> FileFormatError:
+    """Return the error for a layer that is named in a format without layers."""
+    return FileFormatError(f"{path}: {path.suffix.lower()} files have no layers")
+
+
+def without(path: object, what: str) -> FileFormatError:
+    """Return the error for a file without points, triangles or the like."""
+    return FileFormatError(f"{path} contains no {what}")
+
+
+def cut_short(path: object, declared: object, contained: object) -> FileFormatError:
+    """Return the error for a file that contains less than it declares."""
+    return FileFormatError(f"{path} declares {declared} and contains {contained}: it is truncated")
+
+
+def unread(path: object, kind: str, error: object) -> FileFormatError:
+    """Return the error for a file that a library cannot read as one of a kind, such as "NumPy"."""
+    reason = str(error).partition("\n")[0] or type(error).__name__
+    return FileFormatError(f"{path} is truncated or not a {kind} file: {reason:.200}")
+
+
+def corrupt(path: object, what: object) -> FileFormatError:
+    """Return the error for a file whose contents contradict each other."""
+    return FileFormatError(f"{path} is truncated or corrupt: {what!s:.100}")
+
+
+def loaded(
+    content: bytes, path: object, look: Callable[[list[tuple[str, Any]]], Any] | None = None
+) -> Any:
+    """Return what a JSON file contains; `look` makes objects of their members."""
+    try:
+        return json.loads(content, object_pairs_hook=look)
+    except FileFormatError:
+        raise
+    except (ValueError, RecursionError) as error:
+        raise FileFormatError(f"{path} is not JSON: {str(error)[:100]}") from error
+
+
+@contextmanager
+def reading_as(path: object, kind: str) -> Iterator[None]:
+    """Convert whatever a library raises for a damaged file to the same error."""
+    try:
+        yield
+    except (DeloneError, FileNotFoundError, PermissionError, MemoryError):
+        raise
+    except Exception as error:
+        raise unread(path, kind, error) from error
