@@ -94,7 +94,7 @@ def corner(rng: random.Random) -> Floats:  # noqa: PLR0911
 def ring(rng: random.Random) -> Floats:
     while True:
         if rng.random() < 0.3:
-            # Around a center, concave.
+            # Around a center, convex or concave.
             c = corner(rng)
             if not c.any():
                 continue
@@ -104,7 +104,8 @@ def ring(rng: random.Random) -> Floats:
             b = np.cross(c, a)
             radius, m = rng.choice([0.5, 0.1, 1e-3, 1e-6, 1e-8]), rng.choice([5, 7, 9, 13])
             angles = 2 * np.pi * np.arange(m) / m
-            lengths = radius * np.array([rng.choice([1, 0.3, 0.5, 1]) for _ in range(m)])
+            shares = [1.0] if rng.random() < 0.3 else [1, 0.3, 0.5, 1]
+            lengths = radius * np.array([rng.choice(shares) for _ in range(m)])
             spokes = np.cos(angles)[:, None] * a + np.sin(angles)[:, None] * b
             found: Floats = c + lengths[:, None] * spokes
             return found
@@ -154,6 +155,31 @@ def test_two_polygons(seed: int) -> None:
             assert area >= 0
             assert abs(area - exact) <= max(4e-15 * small, 1e-29), (p.tolist(), q.tolist())
             assert found.first.sum() == found.second.sum() == area
+
+
+@pytest.mark.parametrize("seed", seeds(2, deep=30))
+def test_which_cells_are_convex(seed: int) -> None:
+    # Integers in the plane of one side of a cube, seen from its center: arcs are segments there.
+    rng = random.Random(seed)
+    seen = set()
+    for _ in range(600):
+        side, count, axis = rng.randint(1, 3), rng.randint(3, 7), rng.randrange(3)
+        flat = [(rng.randint(-side, side), rng.randint(-side, side)) for _ in range(count)]
+        known = polygons([np.roll([(x, y, 3.0) for x, y in flat], axis, axis=1)]).check(True, 1)
+        if known.faults[0]:
+            continue
+        if known.turned[0]:
+            flat.reverse()
+        ends = list(zip(flat, flat[1:] + flat[:1], strict=True))
+        beside = (
+            (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) < 0
+            for a, b in ends
+            for c in flat
+        )
+        concave = any(beside)
+        assert known.concave[0] == concave, flat
+        seen.add((concave, count))
+    assert len(seen) > 6
 
 
 @pytest.mark.parametrize("seed", seeds(6, deep=200))

@@ -15,11 +15,12 @@ use delone_predicates::sphere::{Unit, leveled, same};
 use delone_predicates::{Point3, Sign, orient2d};
 
 use crate::base::error::Result;
+use crate::base::points::Extent;
 use crate::base::watch::Watch;
 use crate::locate::boxes::Boxes;
 
 use super::outline::{Fault, Prepared, distinct, start_at_smallest};
-use super::pairs::{Pair3, Turn, chart, chart_of, cross_of, factor, heads};
+use super::pairs::{Pair3, Turn, chart_of, cross_of, heads};
 use super::sides::{MANY, any_pair};
 use super::signs::{Moved, Side, side};
 
@@ -27,6 +28,9 @@ use super::signs::{Moved, Side, side};
 pub const LEAST: f64 = 1e-29;
 /// The least cosine of the angle between the center and a corner.
 const WITHIN: f64 = 1e-6;
+
+/// A direction that no usual cell has sides toward.
+const OBLIQUE: Point3 = [0.36, 0.48, 0.8];
 
 /// Directions that agree in multiples of its inverse are one for the smallest cap.
 const GRAIN: f64 = 1e9;
@@ -87,8 +91,9 @@ impl Prepared<3> for Cell {
         };
         let mut kept: Vec<(bool, Ring)> = Vec::new();
         for (hole, ring) in rings {
-            let ring = cell.distinct(ring);
+            let mut ring = cell.distinct(ring);
             if ring.len() > 2 {
+                start_at_smallest(&mut ring, |p, q| compare(&p.0, &q.0));
                 kept.push((hole, ring));
             }
         }
@@ -98,44 +103,43 @@ impl Prepared<3> for Cell {
         if kept.iter().any(|(_, ring)| has_opposite(ring)) {
             return (None, Some(Fault::Opposite));
         }
-        let Some((center, _)) = around(&kept) else {
+        let Some(mut cap) = around(&kept) else {
             return (None, Some(Fault::Large));
         };
-        let axis = chart_of(center);
+        let (mut axis, mut changed) = (chart_of(cap.0), false);
+        let mut all = Turn::new();
         for (hole, ring) in &mut kept {
             let mut own = Turn::new();
-            let mut last = chart(axis, &ring[ring.len() - 1].1);
-            for (_, unit) in ring.iter() {
-                let next = chart(axis, unit);
-                own.mul(factor(&last, &next), false);
-                last = next;
-            }
+            own.around(axis, ring);
             if (own.area() < 0.0) != *hole {
                 ring.reverse();
+                start_at_smallest(ring, |p, q| compare(&p.0, &q.0));
                 cell.turned |= !*hole;
+                changed = true;
             }
-            start_at_smallest(ring, |p, q| compare(&p.0, &q.0));
+            all = own;
         }
-        // Again, now that the order of corners is independent of that of the input: charts depend on
-        // the last bits of a center that is as near to one axis as to another.
-        let Some((center, radius)) = around(&kept) else {
-            return (None, Some(Fault::Large));
-        };
-        (cell.center, cell.radius) = (center, radius);
-        let (axis, mut all) = (chart_of(center), Turn::new());
-        for (_, ring) in &kept {
-            cell.add(ring);
+        if changed {
+            // Again, now that the order of corners is independent of that of the input: charts depend
+            // on the last bits of a center that is as near to one axis as to another.
+            let Some(again) = around(&kept) else {
+                return (None, Some(Fault::Large));
+            };
+            (cap, axis) = (again, chart_of(again.0));
         }
-        for corner in &cell.corners {
-            let next = &cell.corners[corner.next as usize];
-            all.mul(
-                factor(&chart(axis, &corner.unit), &chart(axis, &next.unit)),
-                false,
-            );
+        if changed || kept.len() > 1 {
+            all = Turn::new();
+            for (_, ring) in &kept {
+                all.around(axis, ring);
+            }
         }
+        (cell.center, cell.radius) = cap;
         cell.area = all.area();
         if cell.area < LEAST {
             return (None, Some(Fault::Empty));
+        }
+        for (_, ring) in &kept {
+            cell.add(ring);
         }
         cell.convex = cell.corners.len() <= MANY && cell.is_convex();
         (Some(cell), None)
@@ -201,30 +205,60 @@ impl Cell {
         }
     }
 
-    /// Whether no corner is to the right of a side, and the ring runs around once. One that runs around
-    /// several times, with no corner to the right of a side, visits the corners of its hull again.
+    /// Whether no corner is to the right of a side, and the ring runs around once.
+    ///
+    /// Seen from the center of the sphere, the ring is a polygon in a plane. Where it turns left at each
+    /// corner, it turns around as often as the directions of its sides pass half a turn each, twice for
+    /// each time: seen from `far`, a direction at infinity of such a plane, sides run to the left or to
+    /// the right. Where something is on a side, all corners are compared with all sides.
     fn is_convex(&self) -> bool {
+        if !self.later.is_empty() {
+            return false;
+        }
+        let (count, c) = (self.corners.len(), self.center);
+        let far = [
+            c[1] * OBLIQUE[2] - c[2] * OBLIQUE[1],
+            c[2] * OBLIQUE[0] - c[0] * OBLIQUE[2],
+            c[0] * OBLIQUE[1] - c[1] * OBLIQUE[0],
+        ];
+        let (mut changes, mut last) = (0, 0);
+        let mut tied = dotted(&far, &far) < 0.01;
+        for k in 0..count {
+            let own = self.side(k);
+            let turn = side(own, self.corners[(k + 2) % count].v, Moved::Neither);
+            if turn < 0 {
+                return false;
+            }
+            let seen = side(own, far, Moved::Neither);
+            tied |= turn == 0 || seen == 0;
+            changes += i32::from(k > 0 && seen != last);
+            last = seen;
+        }
+        if tied {
+            self.is_convex_with_ties()
+        } else {
+            // The last change is between the last side and the first.
+            changes <= 2
+        }
+    }
+
+    /// The same by all corners and all sides. A ring that runs around several times, with no corner to
+    /// the right of a side, visits the corners of its hull again.
+    fn is_convex_with_ties(&self) -> bool {
         let count = self.corners.len();
-        let one_ring = (0..count).all(|k| self.corners[k].next as usize == (k + 1) % count);
         let distinct = |p: &Corner, q: &Corner| {
             (0..3).any(|k| (p.unit[k].hi - q.unit[k].hi).abs() > 1e-12) || !same(p.v, q.v)
         };
-        let once = || {
-            (1..count).all(|k| {
-                let before = &self.corners[..k];
-                before.iter().all(|p| distinct(p, &self.corners[k]))
+        let once = (1..count).all(|k| {
+            let before = &self.corners[..k];
+            before.iter().all(|p| distinct(p, &self.corners[k]))
+        });
+        once && (0..count).all(|e| {
+            let next = self.corners[e].next as usize;
+            (0..count).all(|k| {
+                k == e || k == next || side(self.side(e), self.corners[k].v, Moved::Neither) >= 0
             })
-        };
-        one_ring
-            && once()
-            && (0..count).all(|e| {
-                let next = self.corners[e].next as usize;
-                (0..count).all(|k| {
-                    k == e
-                        || k == next
-                        || side(self.side(e), self.corners[k].v, Moved::Neither) >= 0
-                })
-            })
+        })
     }
 
     fn cross(&self, e: usize, f: usize) -> bool {
@@ -287,26 +321,62 @@ fn has_opposite(ring: &Ring) -> bool {
     })
 }
 
+/// A box that holds a cell of these corners, whether or not something is wrong with it: the box of the
+/// corners and, as the sphere bulges, some more; see [`Cell::extent`].
+pub fn bounds(corners: &[Point3]) -> Extent<3> {
+    let directions = corners.iter().map(|&v| {
+        let w = leveled(v);
+        let length = dotted(&w, &w).sqrt();
+        w.map(|x| x / length)
+    });
+    let own = Extent::of(directions);
+    if corners.is_empty() {
+        return own;
+    }
+    let middle = [0, 1, 2].map(|k| 0.5 * (own.min[k] + own.max[k]));
+    let Some(center) = scaled(middle) else {
+        return Extent::EVERYWHERE;
+    };
+    // The farthest place of the box from the center.
+    let square = (0..3)
+        .map(|k| {
+            (own.max[k] - center[k])
+                .abs()
+                .max((own.min[k] - center[k]).abs())
+        })
+        .map(|x| x * x)
+        .sum::<f64>();
+    if square > 1.0 {
+        return Extent::EVERYWHERE;
+    }
+    let bulge = 0.5 * square + 1e-12;
+    Extent {
+        min: own.min.map(|x| x - bulge),
+        max: own.max.map(|x| x + bulge),
+    }
+}
+
 /// A center of a hemisphere that contains all corners, and the largest distance from it: the mean of
 /// the corners, else the center of the smallest cap that contains them.
 fn around(rings: &[(bool, Ring)]) -> Option<(Point3, f64)> {
-    let units: Vec<Point3> = rings
-        .iter()
-        .flat_map(|(_, ring)| ring.iter().map(|(_, unit)| heads(unit)))
-        .collect();
+    let units = || {
+        let rings = rings.iter().flat_map(|(_, ring)| ring);
+        rings.map(|(_, unit)| heads(unit))
+    };
     let mut sum = [0.0; 3];
-    for p in &units {
+    for p in units() {
         sum = [0, 1, 2].map(|k| sum[k] + p[k]);
     }
-    let mean = scaled(sum).unwrap_or(units[0]);
-    let center = if within(&units, mean) {
-        mean
-    } else {
-        smallest_cap(&units).filter(|&center| within(&units, center))?
+    let center = match scaled(sum).or(units().next()) {
+        Some(mean) if within(units(), mean) => mean,
+        _ => {
+            let all: Vec<Point3> = units().collect();
+            smallest_cap(&all).filter(|&center| within(units(), center))?
+        }
     };
     // By differences: near the center, products do not distinguish corners.
-    let distance = |p: &Point3| (0..3).map(|k| (p[k] - center[k]).powi(2)).sum::<f64>();
-    let farthest = units.iter().map(distance).fold(0.0, f64::max);
+    let distance = |p: Point3| (0..3).map(|k| (p[k] - center[k]).powi(2)).sum::<f64>();
+    let farthest = units().map(distance).fold(0.0, f64::max);
     Some((center, farthest.sqrt()))
 }
 
@@ -322,8 +392,8 @@ fn scaled(c: Point3) -> Option<Point3> {
 }
 
 /// Whether all directions are within the hemisphere around a center.
-fn within(units: &[Point3], center: Point3) -> bool {
-    units.iter().all(|p| dotted(p, &center) > WITHIN)
+fn within(mut units: impl Iterator<Item = Point3>, center: Point3) -> bool {
+    units.all(|p| dotted(&p, &center) > WITHIN)
 }
 
 /// The center of the smallest cap that contains all directions, if that is less than a hemisphere:

@@ -13,7 +13,7 @@ use crate::locate::boxes::Boxes;
 use crate::order::order_of;
 
 use super::bands::Block;
-use super::cell::Cell;
+use super::cell::{Cell, bounds};
 use super::meet;
 use super::outline::{Outline, Work};
 use super::plane::{self, Region};
@@ -84,7 +84,7 @@ pub fn overlaps(p: &Grid, q: &Grid, workers: usize, watch: &Watch) -> Result<Sha
     }
 }
 
-/// Extents of cells in singles, rounded outward; empty ones for cells with faults.
+/// Extents of cells in singles, rounded outward; inverted ones for cells without corners.
 struct Extents {
     min: Vec<[f32; 3]>,
     max: Vec<[f32; 3]>,
@@ -98,17 +98,11 @@ impl Extents {
             let mut part = with_room(own.len())?;
             for i in own {
                 // Singles have 24 bits, and coordinates are at most 2.
-                part.push(
-                    cells
-                        .usable::<Cell>(i)
-                        .map_or(([f32::MAX; 3], [f32::MIN; 3]), |cell| {
-                            let extent = cell.extent();
-                            (
-                                extent.min.map(|x| (x - 2.5e-7) as f32),
-                                extent.max.map(|x| (x + 2.5e-7) as f32),
-                            )
-                        }),
-                );
+                let extent = bounds(cells.corners(i));
+                part.push((
+                    extent.min.map(|x| (x.max(-2.0) - 2.5e-7) as f32),
+                    extent.max.map(|x| (x.min(2.0) + 2.5e-7) as f32),
+                ));
             }
             Ok(part)
         })?;
@@ -173,14 +167,13 @@ fn of_polygons(
     let (order, targets) = (of_p.order(watch)?, of_q.order(watch)?);
     let tree = Boxes::packed(targets, |i| of_q.extent(i), watch)?;
     let meets = |i: usize, j: usize| of_q.meets(j, &of_p.extent(i));
-    let sides = (&|i| (p.usable::<Cell>(i), of_p.extent(i)), &|j| {
-        q.usable::<Cell>(j)
-    });
+    let sides = (&|i| p.usable::<Cell>(i), &|j| q.usable::<Cell>(j));
+    let boxes = (&|i: usize| of_p.extent(i), &meets);
     let shared = |p: &Cell, q: &Cell, work: &mut Work, pace: &mut Pace| {
         let area = meet::shared(p, q, work, pace)?;
         Ok(if area > TINY { area } else { 0.0 })
     };
-    of_cells((order, tree), sides, meets, shared, workers, watch)
+    of_cells((order, tree), sides, boxes, shared, workers, watch)
 }
 
 /// Parts of cells of the plane.
@@ -193,19 +186,17 @@ pub fn overlaps_plane(
     p.check()?;
     q.check()?;
     let extents = |cells: &Polygons<2>| -> Result<(Vec<Extent<2>>, Vec<u32>)> {
-        let tasks: Vec<usize> = (0..cells.len()).step_by(LOT).collect();
-        let parts = map_watched(workers, tasks, watch, |first| {
-            let mut part = with_room(LOT)?;
-            for i in first..(first + LOT).min(cells.len()) {
-                let cell = cells.usable::<Region>(i);
-                part.push(cell.map_or(Extent::of([]), |cell| cell.extent()));
-            }
-            Ok(part)
-        })?;
         let mut all: Vec<Extent<2>> = with_room(cells.len())?;
-        all.extend(parts.into_iter().flatten());
-        let mut usable: Vec<u32> = with_room(all.len())?;
-        usable.extend((0..all.len() as u32).filter(|&i| all[i as usize].min < all[i as usize].max));
+        let mut usable: Vec<u32> = with_room(cells.len())?;
+        let mut pace = Pace::new(watch, PACE);
+        for i in 0..cells.len() {
+            let corners = cells.corners(i);
+            pace.spend(corners.len() + 1)?;
+            all.push(Extent::of(corners.iter().copied()));
+            if !corners.is_empty() {
+                usable.push(i as u32);
+            }
+        }
         let mut middles: Vec<[f64; 2]> = with_room(usable.len())?;
         middles.extend(usable.iter().map(|&i| {
             let Extent { min, max } = all[i as usize];
@@ -224,10 +215,9 @@ pub fn overlaps_plane(
         let (a, b) = (&of_p[i], &of_q[j]);
         (0..2).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k])
     };
-    let sides = (&|i| (p.usable::<Region>(i), of_p[i]), &|j| {
-        q.usable::<Region>(j)
-    });
-    let parts = of_cells((order, tree), sides, meets, plane::shared, workers, watch)?;
+    let sides = (&|i| p.usable::<Region>(i), &|j| q.usable::<Region>(j));
+    let boxes = (&|i: usize| of_p[i], &meets);
+    let parts = of_cells((order, tree), sides, boxes, plane::shared, workers, watch)?;
     gathered(parts, (p.len(), q.len()), false, 0.0, watch)
 }
 
@@ -235,10 +225,13 @@ pub fn overlaps_plane(
 fn of_cells<C: Outline<D>, const D: usize>(
     (order, tree): (Vec<u32>, Boxes<D>),
     (first, second): (
-        &(impl Fn(usize) -> (Option<C>, Extent<D>) + Sync),
+        &(impl Fn(usize) -> Option<C> + Sync),
         &(impl Fn(usize) -> Option<C> + Sync),
     ),
-    meets: impl Fn(usize, usize) -> bool + Sync,
+    (extent, meets): (
+        &(impl Fn(usize) -> Extent<D> + Sync),
+        &(impl Fn(usize, usize) -> bool + Sync),
+    ),
     shared: impl Fn(&C, &C, &mut Work, &mut Pace) -> Result<f64> + Sync,
     workers: usize,
     watch: &Watch,
@@ -249,15 +242,18 @@ fn of_cells<C: Outline<D>, const D: usize>(
         let mut pace = Pace::new(watch, PACE);
         let mut near = Vec::new();
         for &i in own {
-            let (Some(cell), extent) = first(i as usize) else {
-                continue;
-            };
             near.clear();
-            tree.meeting(&extent, |j| {
+            tree.meeting(&extent(i as usize), |j| {
                 if meets(i as usize, j) {
                     near.push(j);
                 }
             });
+            if near.is_empty() {
+                continue;
+            }
+            let Some(cell) = first(i as usize) else {
+                continue;
+            };
             if kept.len() > KEPT {
                 kept.clear();
             }

@@ -11,12 +11,14 @@ use crate::base::watch::Pace;
 use crate::locate::boxes::Boxes;
 
 use super::cell::{Cell, Corner, dotted};
+use super::convex::Pieces;
 use super::outline::{Met, Outline, Sum, Work, cross_at, meet};
 use super::pairs::{
-    Pair3, Turn, base, chart, chart_of, cross, cross_of, dot, factor, heads, quotient, raised, unit,
+    Pair3, Spot, Turn, base, chart_of, cross, cross_of, dot, factor, heads, quotient, raised, spot,
+    toward, unit,
 };
 use super::sides::{MANY, meeting};
-use super::signs::{Moved, Side, side};
+use super::signs::{Moved, Side, left, side};
 
 impl Outline<3> for Cell {
     fn count(&self) -> usize {
@@ -63,6 +65,15 @@ impl Outline<3> for Cell {
         side(self.side(k as usize), v, moved) as i8
     }
 
+    #[inline]
+    fn left(&self, k: u32, other: &Self, moved: Moved) -> u32 {
+        left(
+            self.side(k as usize),
+            other.corners.iter().map(|c| c.v),
+            moved,
+        )
+    }
+
     /// The parity of sides that cross an arc from the corner to a direction outside, which belongs to
     /// the other cell and moves with it.
     fn holds(
@@ -105,7 +116,24 @@ struct Product<'a> {
     turn: Turn,
     /// The side of the first cell, and where it is measured from.
     e: u32,
-    from: Pair3,
+    from: Spot,
+}
+
+impl Pieces for Product<'_> {
+    type Spot = Spot;
+
+    fn corner(&self, second: bool, k: u32) -> Spot {
+        let cell = if second { self.q } else { self.p };
+        spot(self.axis, &cell.corners[k as usize].unit)
+    }
+
+    fn place(&self, e: u32, f: u32, leaves: bool) -> Spot {
+        crossing(self.axis, (self.p, e), (self.q, f), leaves)
+    }
+
+    fn piece(&mut self, from: &Spot, to: &Spot) {
+        self.turn.mul(factor(from, to), false);
+    }
 }
 
 impl Sum for Product<'_> {
@@ -115,12 +143,12 @@ impl Sum for Product<'_> {
     }
 
     fn first(&mut self) {
-        let end = chart(self.axis, &ends(self.p, self.e).1.unit);
+        let end = spot(self.axis, &ends(self.p, self.e).1.unit);
         self.turn.mul(factor(&self.from, &end), false);
     }
 
     fn crossing(&mut self, f: u32, leaves: bool) {
-        let x = chart(self.axis, &crossing((self.p, self.e), (self.q, f), leaves));
+        let x = self.place(self.e, f, leaves);
         self.turn.mul(factor(&self.from, &x), !leaves);
         let (c, d) = ends(self.q, f);
         let from = base(self.axis, &c.unit, &d.unit);
@@ -131,7 +159,7 @@ impl Sum for Product<'_> {
         let (c, d) = ends(self.q, f);
         let from = base(self.axis, &c.unit, &d.unit);
         self.turn
-            .mul(factor(&from, &chart(self.axis, &d.unit)), false);
+            .mul(factor(&from, &spot(self.axis, &d.unit)), false);
     }
 }
 
@@ -145,7 +173,7 @@ pub fn shared(p: &Cell, q: &Cell, work: &mut Work, pace: &mut Pace) -> Result<f6
         axis,
         turn: Turn::new(),
         e: 0,
-        from: p.corners[0].unit,
+        from: spot(axis, &p.corners[0].unit),
     };
     Ok(match meet(p, q, work, pace, &mut sum)? {
         Met::Nothing => 0.0,
@@ -240,13 +268,13 @@ fn along(p: Point3, n: &Pair3) -> impl Iterator<Item = Extent<3>> {
     })
 }
 
-/// Where a side of the first cell crosses one of the second, as a unit vector.
+/// Where a side of the first cell crosses one of the second, in a chart.
 ///
 /// On nearly equal circles the error of n x m points in any direction. Removing the component off
 /// the first circle leaves an error along both, which is harmless. On circles that are equal but
 /// for roundings, any point of both arcs serves: an end of one that is on the other.
-fn crossing((p, e): (&Cell, u32), (q, f): (&Cell, u32), leaves: bool) -> Pair3 {
-    let ((a, b), (c, d)) = (ends(p, e), ends(q, f));
+fn crossing(axis: usize, (p, e): (&Cell, u32), (q, f): (&Cell, u32), leaves: bool) -> Spot {
+    let ((a, _), (c, _)) = (ends(p, e), ends(q, f));
     let (n, m) = (&a.n, &c.n);
     // The first side leaves to the right of the second one: it is m x n there.
     let x = if leaves { cross(n, m) } else { cross(m, n) };
@@ -254,14 +282,22 @@ fn crossing((p, e): (&Cell, u32), (q, f): (&Cell, u32), leaves: bool) -> Pair3 {
     let length = |v: &Pair3| v.iter().map(|x| x.hi.abs()).sum::<f64>();
     let scale = length(n) * length(m);
     if size > 1e-5 * scale {
-        return unit(&x);
+        return toward(axis, &x);
     }
     if size > 1e-26 * scale {
         let x = unit(&x);
         let n = &raised(n);
         let k = quotient(dot(n, &x), dot(n, n));
-        return unit(&[0, 1, 2].map(|j| x[j] - n[j] * k));
+        return toward(axis, &[0, 1, 2].map(|j| x[j] - n[j] * k));
     }
+    spot(axis, &nearest((p, e), (q, f)))
+}
+
+/// Of the ends of two sides on one circle, the one that is most on the other side.
+#[cold]
+fn nearest((p, e): (&Cell, u32), (q, f): (&Cell, u32)) -> Pair3 {
+    let ((a, b), (c, d)) = (ends(p, e), ends(q, f));
+    let (n, m) = (&a.n, &c.n);
     // How far an end is from the middle of the other side, over half the length of that: at most 1
     // on it.
     let between = |u: &Pair3, x: &Pair3, y: &Pair3, normal: &Pair3| {

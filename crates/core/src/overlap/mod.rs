@@ -12,6 +12,7 @@
 
 mod bands;
 mod cell;
+mod convex;
 mod exact;
 mod gather;
 mod meet;
@@ -129,6 +130,12 @@ impl<const D: usize> Polygons<'_, D> {
     fn usable<C: Prepared<D>>(&self, i: usize) -> Option<C> {
         let (cell, fault) = self.cell(i);
         cell.filter(|_| fault.is_none())
+    }
+
+    /// The corners of a cell.
+    fn corners(&self, i: usize) -> &[[f64; D]] {
+        let [from, to] = [0, 1].map(|k| self.rings[self.cells[i + k] as usize] as usize);
+        &self.vectors[from..to]
     }
 
     /// A cell, prepared, and what is wrong with it.

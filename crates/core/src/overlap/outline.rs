@@ -17,6 +17,7 @@ use crate::base::error::{Error, Result};
 use crate::base::memory::push;
 use crate::base::watch::{Pace, Watch};
 
+use super::convex::{self, Pieces};
 pub use super::sides::Outline;
 use super::sides::meeting;
 use super::signs::Moved;
@@ -35,8 +36,8 @@ pub enum Fault {
     Crossing = 4,
 }
 
-/// Takes the terms of a sum.
-pub trait Sum {
+/// Takes the terms of a sum, or the sides of what cells share.
+pub trait Sum: Pieces {
     /// A side of the first cell, which the terms that follow are about.
     fn side(&mut self, e: u32);
     /// That side ends in the second cell.
@@ -109,6 +110,9 @@ pub fn meet<C: Outline<D>, const D: usize>(
     pace: &mut Pace,
     sum: &mut impl Sum,
 ) -> Result<Met> {
+    if convex::takes(p, q) {
+        return convex::meet(p, q, sum);
+    }
     let Work {
         at,
         of,

@@ -110,17 +110,23 @@ pub fn raised(v: &Pair3) -> Pair3 {
     }
 }
 
+/// The vector times the power of two that brings its largest coordinate to 1 <= |x| < 2, so that
+/// squares are in range. It must not be zero.
+#[inline]
+pub fn leveled(v: &Pair3) -> Pair3 {
+    let top = v.iter().fold(0.0, |top: f64, x| top.max(x.hi.abs()));
+    let exponent = ((top.to_bits() >> 52) & 0x7ff) as i64 - 1023;
+    let up = f64::from_bits(((1023 - exponent).clamp(1, 2046) as u64) << 52);
+    v.map(|x| times(x, up))
+}
+
 /// The vector divided by its length; zero stays zero.
 #[inline]
 pub fn unit(v: &Pair3) -> Pair3 {
-    let top = v.iter().fold(0.0, |top: f64, x| top.max(x.hi.abs()));
-    if top == 0.0 {
+    if v.iter().all(|x| x.hi == 0.0) {
         return [ZERO; 3];
     }
-    // A power of two keeps the square in range.
-    let exponent = ((top.to_bits() >> 52) & 0x7ff) as i64 - 1023;
-    let up = f64::from_bits(((1023 - exponent).clamp(1, 2046) as u64) << 52);
-    let v = v.map(|x| times(x, up));
+    let v = leveled(v);
     let inverse = quotient(ONE, root(dot(&v, &v)));
     v.map(|x| x * inverse)
 }
@@ -162,19 +168,43 @@ pub fn chart_of(c: Point3) -> usize {
 /// zero has no maximum but at its ends. And a start below `LOWEST` is in no part that is above, so
 /// no part begins there.
 #[inline]
-pub fn base(axis: usize, start: &Pair3, end: &Pair3) -> Pair3 {
-    let from = chart(axis, start);
-    if from[2].hi < LOWEST {
-        chart(axis, end)
+pub fn base(axis: usize, start: &Pair3, end: &Pair3) -> Spot {
+    let from = spot(axis, start);
+    if from[2].hi < 1.0 + LOWEST {
+        spot(axis, end)
     } else {
         from
     }
 }
 
-/// The factor of the triangle of the pole and two unit vectors of its chart.
+/// A place in a chart: x and y, and its height above the opposite of the pole, for a vector of any
+/// length. Of a unit vector that is 1 + z.
+pub type Spot = [Pair; 3];
+
+/// The place of a unit vector.
 #[inline]
-pub fn factor(p: &Pair3, q: &Pair3) -> (Pair, Pair) {
-    let re = (ONE + p[2]) * (ONE + q[2]) + p[0] * q[0] + p[1] * q[1];
+pub fn spot(axis: usize, p: &Pair3) -> Spot {
+    spot_of(axis, p, ONE)
+}
+
+/// The place of a vector with a length.
+#[inline]
+pub fn spot_of(axis: usize, p: &Pair3, length: Pair) -> Spot {
+    let [x, y, z] = chart(axis, p);
+    [x, y, length + z]
+}
+
+/// The place of a vector that is not zero, without dividing by its length.
+#[inline]
+pub fn toward(axis: usize, v: &Pair3) -> Spot {
+    let v = leveled(v);
+    spot_of(axis, &v, root(dot(&v, &v)))
+}
+
+/// The factor of the triangle of the pole and two places of its chart.
+#[inline]
+pub fn factor(p: &Spot, q: &Spot) -> (Pair, Pair) {
+    let re = p[2] * q[2] + p[0] * q[0] + p[1] * q[1];
     let im = p[0] * q[1] - p[1] * q[0];
     (re, im)
 }
@@ -213,6 +243,18 @@ impl Turn {
             1.0
         };
         (self.re, self.im) = (times(x, power), times(y, power));
+    }
+
+    /// Adds the area to the left of a ring.
+    pub fn around(&mut self, axis: usize, ring: &[(Point3, Pair3)]) {
+        let first = spot(axis, &ring[0].1);
+        let mut last = first;
+        for (_, unit) in &ring[1..] {
+            let next = spot(axis, unit);
+            self.mul(factor(&last, &next), false);
+            last = next;
+        }
+        self.mul(factor(&last, &first), false);
     }
 
     /// The sum, from -2 pi to 2 pi.

@@ -24,6 +24,7 @@ use crate::base::points::Extent;
 use crate::base::watch::{Pace, Watch};
 use crate::locate::boxes::Boxes;
 
+use super::convex::Pieces;
 use super::outline::{Fault, Met, Outline, Prepared, Sum, Work, distinct, meet, start_at_smallest};
 use super::pairs::{ZERO, pair, quotient};
 use super::sides::{MANY, any_pair, meeting};
@@ -317,19 +318,16 @@ impl Doubled<'_> {
     }
 }
 
-impl Sum for Doubled<'_> {
-    fn side(&mut self, e: u32) {
-        (self.e, self.from) = (e, from(self.origin, self.p.ends(e)[0]));
+impl Pieces for Doubled<'_> {
+    type Spot = [Pair; 2];
+
+    fn corner(&self, second: bool, k: u32) -> [Pair; 2] {
+        let cell = if second { self.q } else { self.p };
+        from(self.origin, cell.corners[k as usize].v)
     }
 
-    fn first(&mut self) {
-        let end = from(self.origin, self.p.ends(self.e)[1]);
-        let base = self.from;
-        self.add(&base, &end, false);
-    }
-
-    fn crossing(&mut self, f: u32, leaves: bool) {
-        let ([a, b], [c, d]) = (self.p.ends(self.e), self.q.ends(f));
+    fn place(&self, e: u32, f: u32, _: bool) -> [Pair; 2] {
+        let ([a, b], [c, d]) = (self.p.ends(e), self.q.ends(f));
         let across = from(c, d);
         let [s, t] = [a, b].map(|v| cross(&across, &from(c, v)));
         let whole = s - t;
@@ -349,10 +347,30 @@ impl Sum for Doubled<'_> {
         };
         let along = from(a, b);
         let start = from(self.origin, a);
-        let x = [0, 1].map(|k| start[k] + along[k] * share);
+        [0, 1].map(|k| start[k] + along[k] * share)
+    }
+
+    fn piece(&mut self, from: &[Pair; 2], to: &[Pair; 2]) {
+        self.add(from, to, false);
+    }
+}
+
+impl Sum for Doubled<'_> {
+    fn side(&mut self, e: u32) {
+        (self.e, self.from) = (e, from(self.origin, self.p.ends(e)[0]));
+    }
+
+    fn first(&mut self) {
+        let end = from(self.origin, self.p.ends(self.e)[1]);
+        let base = self.from;
+        self.add(&base, &end, false);
+    }
+
+    fn crossing(&mut self, f: u32, leaves: bool) {
+        let x = self.place(self.e, f, leaves);
         let base = self.from;
         self.add(&base, &x, !leaves);
-        let base = from(self.origin, c);
+        let base = self.corner(true, f);
         self.add(&base, &x, leaves);
     }
 

@@ -37,6 +37,12 @@ pub trait Outline<const D: usize>: Sized {
     fn kept(&self) -> &OnceLock<Boxes<D>>;
     /// Where a corner of another cell is: 1 to the left of a side, -1 to its right.
     fn sign(&self, k: u32, other: &Self, corner: u32, moved: Moved) -> i8;
+    /// The corners of another cell, of up to 32, that are to the left of a side, as bits.
+    fn left(&self, k: u32, other: &Self, moved: Moved) -> u32 {
+        (0..other.count() as u32).fold(0, |bits, l| {
+            bits | u32::from(self.sign(k, other, l, moved) > 0) << l
+        })
+    }
     /// Whether a corner of another cell is in this one; of the two, `moved` has moved.
     fn holds(
         &self,

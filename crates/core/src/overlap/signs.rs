@@ -152,6 +152,26 @@ pub fn side(e: Side, q: Point3, moved: Moved) -> i32 {
     side_exact(e, q, moved)
 }
 
+/// The corners that are to the left of a circle, as bits: all filters together, so that they can be
+/// computed side by side.
+#[inline]
+pub fn left(e: Side, corners: impl Iterator<Item = Point3> + Clone, moved: Moved) -> u32 {
+    let n = e.n;
+    let (mut bits, mut sure) = (0, true);
+    for (l, q) in corners.clone().enumerate() {
+        let (x, y, z) = (n[0].hi * q[0], n[1].hi * q[1], n[2].hi * q[2]);
+        let det = x + y + z;
+        sure &= det.abs() > 6.0 * U * (x.abs() + y.abs() + z.abs()) + LOW;
+        bits |= u32::from(det > 0.0) << l;
+    }
+    if sure {
+        return bits;
+    }
+    corners.enumerate().fold(0, |bits, (l, q)| {
+        bits | u32::from(side(e, q, moved) > 0) << l
+    })
+}
+
 #[cold]
 #[inline(never)]
 fn side_exact(e: Side, q: Point3, moved: Moved) -> i32 {

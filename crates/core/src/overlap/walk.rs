@@ -7,8 +7,9 @@
 //! columns only, and no two crossings are ever compared.
 //!
 //! A corner of the grid is in the polygon if sides cross its meridian an odd number of times
-//! between it and the pole that is outside. The sum of areas is that of `meet`. Seen from a pole
-//! the area form along a meridian is zero, so only sides of the polygon and parallels have terms.
+//! between it and the pole that is outside. Seen from a pole the area form along a meridian is zero, so
+//! that the area in a cell is a sum over pieces of sides and of parallels. Each piece of a side, from
+//! one event to the next, is in one cell, and each place where a side crosses is computed once.
 
 use delone_predicates::Point3;
 use delone_predicates::arithmetic::Pair;
@@ -19,7 +20,7 @@ use crate::base::watch::Pace;
 use super::bands::{Block, angle};
 use super::cell::Cell;
 use super::pairs::{
-    ONE, Pair3, Turn, base, chart, factor, negated, pair, quotient, raised, root, sliver, unit,
+    ONE, Pair3, Turn, dot, factor, leveled, negated, pair, quotient, raised, root, sliver, spot_of,
 };
 use super::signs::{Side, above, corner, east, eastward, falling, reaches, rise};
 
@@ -42,9 +43,13 @@ enum Event {
 struct Place {
     l: usize,
     ends: bool,
+    /// From a direction in the column, where the order matters.
     angle: f64,
     x: Pair3,
 }
+
+/// A vector and its length.
+type Long = (Pair3, Pair);
 
 /// Buffers.
 #[derive(Default)]
@@ -52,6 +57,8 @@ pub struct Work {
     /// The row and the column of each corner.
     at: Vec<(i64, usize)>,
     events: Vec<(u32, Event)>,
+    /// Where they are.
+    spots: Vec<Long>,
     /// Meridians and rows where sides cross them.
     crossings: Vec<(u32, i64)>,
     /// Rows of cells that sides touch, by cell, and the events there.
@@ -253,7 +260,10 @@ impl Walked<'_> {
         work.touched.clear();
         let count = block.columns() as u64;
         for (k, (_, event)) in work.events.iter().enumerate() {
-            for (row, column) in self.cells(event).into_iter().flatten() {
+            let [before, after] = self.cells(event);
+            // Where a side goes on after a meridian, the event that ends that piece tells of it.
+            let after = after.filter(|_| matches!(event, Event::Parallel { .. }));
+            for (row, column) in before.into_iter().chain(after) {
                 if block.number(row, column) >= 0 {
                     work.touched
                         .push((row as u64 * count + column as u64, k as u32));
@@ -271,14 +281,18 @@ impl Walked<'_> {
             }
             return Ok(());
         }
+        work.spots.clear();
+        work.spots
+            .extend(work.events.iter().map(|(k, event)| self.spot(*k, event)));
+        pace.spend(work.events.len())?;
         for run in work.touched.chunk_by(|a, b| a.0 == b.0) {
             pace.spend(run.len())?;
             let (row, column) = ((run[0].0 / count) as usize, (run[0].0 % count) as usize);
+            let events = (&work.events[..], &work.spots[..]);
             let area = self.sum(
-                row,
-                column,
+                (row, column),
                 run,
-                &work.events,
+                events,
                 &work.crossings,
                 &mut work.places,
             );
@@ -287,15 +301,35 @@ impl Walked<'_> {
         self.covered(work, pace, give)
     }
 
-    /// The cells that an event is in or between.
+    /// The cells before and after an event.
     fn cells(&self, event: &Event) -> [Option<(usize, usize)>; 2] {
         match *event {
             Event::End { row, column } => [Some((row, column)), None],
-            Event::Meridian { m, row, .. } => [Some((row, self.block.before(m))), Some((row, m))],
-            Event::Parallel { l, column, .. } => [
-                l.checked_sub(1).map(|row| (row, column)),
-                (l < self.block.rows()).then_some((l, column)),
-            ],
+            Event::Meridian { m, row, eastward } => {
+                let (west, east) = ((row, self.block.before(m)), (row, m));
+                if eastward {
+                    [Some(west), Some(east)]
+                } else {
+                    [Some(east), Some(west)]
+                }
+            }
+            Event::Parallel { l, column, up } => {
+                let south = l.checked_sub(1).map(|row| (row, column));
+                let north = (l < self.block.rows()).then_some((l, column));
+                if up { [south, north] } else { [north, south] }
+            }
+        }
+    }
+
+    /// Where an event is.
+    fn spot(&self, k: u32, event: &Event) -> Long {
+        match *event {
+            Event::End { .. } => {
+                let end = self.p.corners[k as usize].next as usize;
+                (self.p.corners[end].unit, ONE)
+            }
+            Event::Meridian { m, row, eastward } => self.at_meridian(m, row, k as usize, eastward),
+            Event::Parallel { l, column, up } => (self.at_parallel(l, column, k as usize, up), ONE),
         }
     }
 
@@ -314,41 +348,39 @@ impl Walked<'_> {
     /// The area in a cell that sides touch.
     fn sum(
         &self,
-        row: usize,
-        column: usize,
+        (row, column): (usize, usize),
         run: &[(u64, u32)],
-        events: &[(u32, Event)],
+        (events, spots): (&[(u32, Event)], &[Long]),
         crossings: &[(u32, i64)],
         places: &mut Vec<Place>,
     ) -> f64 {
         let block = self.block;
         let axis = block.axis(row);
-        let start = self.reference(column);
         places.clear();
         let mut turn = Turn::new();
         let mut place = |l: usize, ends: bool, x: Pair3| {
-            let angle = angle(&start, &[x[0], x[1]]);
+            let angle = 0.0;
             places.push(Place { l, ends, angle, x });
         };
         for &(_, k) in run {
-            let (side, event) = &events[k as usize];
-            let corner = &self.p.corners[*side as usize];
-            let end = &self.p.corners[corner.next as usize].unit;
-            let from = base(axis, &corner.unit, end);
-            match *event {
-                Event::End { .. } => turn.mul(factor(&from, &chart(axis, end)), false),
-                Event::Meridian { m, row, eastward } => {
-                    let x = self.at_meridian(m, row, *side as usize, eastward);
-                    // It leaves the cell to the west if it runs east.
-                    let leaves = (m != column) == eastward;
-                    turn.mul(factor(&from, &chart(axis, &x)), !leaves);
-                }
+            let k = k as usize;
+            let (side, event) = &events[k];
+            let (to, length) = &spots[k];
+            let enters = match *event {
                 Event::Parallel { l, up, .. } => {
-                    let x = self.at_parallel(l, column, *side as usize, up);
-                    let leaves = (l != row) == up;
-                    turn.mul(factor(&from, &chart(axis, &x)), !leaves);
-                    place(l, !leaves, x);
+                    let enters = (l == row) == up;
+                    place(l, enters, *to);
+                    enters
                 }
+                _ => false,
+            };
+            if !enters {
+                // From the event before, or from the start of the side.
+                let start = (self.p.corners[*side as usize].unit, ONE);
+                let before = k.checked_sub(1).filter(|&j| events[j].0 == *side);
+                let (from, above) = before.map_or(&start, |j| &spots[j]);
+                let piece = factor(&spot_of(axis, from, *above), &spot_of(axis, to, *length));
+                turn.mul(piece, false);
             }
         }
         // Corners inside: a part of the southern side begins in the west and ends in the east, and
@@ -363,22 +395,31 @@ impl Walked<'_> {
                 place(l, ends, block.corner(m, l));
             }
         }
-        self.along(&mut turn, places, axis);
+        self.along(&mut turn, places, axis, column);
         turn.area()
     }
 
     /// Adds the parts of parallels. As many begin as end; each is summed by itself, so that short
     /// ones have small errors. Any assignment of ends to beginnings gives the same sum.
-    fn along(&self, turn: &mut Turn, places: &mut [Place], axis: usize) {
-        places.sort_by(|p, q| {
-            let order = (p.l, p.ends).cmp(&(q.l, q.ends));
-            order.then(p.angle.total_cmp(&q.angle))
-        });
+    fn along(&self, turn: &mut Turn, places: &mut [Place], axis: usize, column: usize) {
+        places.sort_by_key(|p| (p.l, p.ends));
+        let same = |p: &[Place]| (p[0].l, p[0].ends) == (p[1].l, p[1].ends);
+        if places.windows(2).any(same) {
+            let start = self.reference(column);
+            for p in places.iter_mut() {
+                p.angle = angle(&start, &[p.x[0], p.x[1]]);
+            }
+            places.sort_by(|p, q| {
+                let order = (p.l, p.ends).cmp(&(q.l, q.ends));
+                order.then(p.angle.total_cmp(&q.angle))
+            });
+        }
         for part in places.chunk_by(|p, q| p.l == q.l) {
             let half = part.len() / 2;
             debug_assert_eq!(part.iter().filter(|x| x.ends).count(), part.len() - half);
             for (p, q) in part[..half].iter().zip(&part[half..]) {
-                turn.mul(factor(&chart(axis, &p.x), &chart(axis, &q.x)), false);
+                let [from, to] = [p, q].map(|place| spot_of(axis, &place.x, ONE));
+                turn.mul(factor(&from, &to), false);
                 let w = angle(&[p.x[0], p.x[1]], &[q.x[0], q.x[1]]);
                 let [k, s] = self.block.lat[p.l].map(|x| x.hi);
                 // Seen from the south pole sines change sign, and so do longitudes.
@@ -412,27 +453,29 @@ impl Walked<'_> {
     ///
     /// An error of the normal moves the place along the meridian. Where the side is on it but for
     /// roundings, any place of both in that row serves.
-    fn at_meridian(&self, m: usize, row: usize, k: usize, eastward: bool) -> Pair3 {
+    fn at_meridian(&self, m: usize, row: usize, k: usize, eastward: bool) -> Long {
         let (block, corner) = (self.block, &self.p.corners[k]);
         let (n, [c, s]) = (&corner.n, block.dir[m]);
         let x = [c * n[2], s * n[2], negated(n[0] * c + n[1] * s)];
         let top = |v: &Pair3| v.iter().fold(0.0, |top: f64, x| top.max(x.hi.abs()));
         if top(&x) > 1e-24 * top(n) {
-            let x = unit(&x);
-            return if eastward { x } else { x.map(negated) };
+            let x = leveled(&x);
+            let length = root(dot(&x, &x));
+            return (if eastward { x } else { x.map(negated) }, length);
         }
         let here = |v: &Point3| {
             let below = above(block.tan[row], *v) && !above(block.tan[row + 1], *v);
             below && v[0] * c.hi + v[1] * s.hi >= 0.0
         };
         let end = &self.p.corners[corner.next as usize];
-        if here(&corner.v) {
+        let x = if here(&corner.v) {
             corner.unit
         } else if here(&end.v) {
             end.unit
         } else {
             block.corner(m, row)
-        }
+        };
+        (x, ONE)
     }
 
     /// Where the circle of a side crosses a parallel, going up or down.
