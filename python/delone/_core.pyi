@@ -84,6 +84,7 @@ __all__ = [
     "combine2",
     "components2",
     "components_beside2",
+    "components_in_polygons2",
     "components_inside2",
     "condensed",
     "constrained2",
@@ -1262,6 +1263,9 @@ class RecoveredFaces:
     def walls(self) -> NDArray[np.int32]:
         """The row of the face opposite each vertex, -1 if there is none, (t, 4)."""
     @property
+    def cells(self) -> NDArray[np.int32]:
+        """The cell of each tetrahedron, from 0: faces separate cells, (t,)."""
+    @property
     def nadded(self) -> int:
         """The number of points that were added."""
     @property
@@ -1786,6 +1790,18 @@ def components_beside2(
     ],
 ) -> NDArray[np.int32]:
     """The components to the left and right of each subsegment, (q, 2)."""
+
+def components_in_polygons2(
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    constrained: NDArray[np.bool_],
+    segments: NDArray[np.int32],
+    covers: tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32]],
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """The components of triangles that share unconstrained edges, and pairs of a component
+    and a polygon whose rings contain it, ascending, (k, 2); what no triangle covers is
+    in none.
+    """
 
 def components_inside2(
     parts: tuple[

@@ -6,7 +6,7 @@ use delone_core::constrained::nesting::{Covers, Parts, odd_pairs};
 use delone_core::constrained::{
     Constrained, Options, Rule, components, constrain, numbered_by_smallest, polygon, simple_ring,
 };
-use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::arrays::{
@@ -258,6 +258,28 @@ pub fn components_inside2(
     }
     let found = watched(py, |watch| parts.containing(segments, covers, first, watch))?;
     table(py, found)
+}
+
+/// The components of triangles that share unconstrained edges, and pairs of a component and a
+/// polygon whose rings contain it, ascending, (k, 2); what no triangle covers is in none.
+#[pyfunction]
+pub fn components_in_polygons2(
+    py: Python<'_>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+    constrained: PyReadonlyArray2<'_, bool>,
+    segments: PyReadonlyArray2<'_, i32>,
+    covers: CoverArrays<'_>,
+) -> Outcome<(Column<i32>, Table<i32>)> {
+    let component = components2(py, neighbors.clone(), constrained.clone())?;
+    let of = component.bind(py).readonly();
+    let first = flat(&of, "component")?
+        .iter()
+        .max()
+        .map_or(0, |&last| last as usize + 1);
+    let parts = PartArrays(simplices, neighbors, constrained, of.clone(), segments);
+    let found = components_inside2(py, parts, covers, first)?;
+    Ok((component, found))
 }
 
 /// Pairs of a subsegment and a polygon of which an odd number of sides cover it, ascending, (k, 2).

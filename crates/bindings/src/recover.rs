@@ -1,11 +1,14 @@
 //! Recovered faces as arrays.
 
+use delone_core::alpha::labels;
 use delone_core::base::error::Error;
+use delone_core::base::memory::{copied, filled};
+use delone_core::base::watch::Watch;
 use delone_core::solids::recover::{Counts, Recovered, Task, recover};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, in_range, numbers, rows, table};
+use crate::arrays::{Column, Table, column, in_range, numbers, rows, table};
 use crate::errors::Outcome;
 use crate::signals::watched;
 
@@ -45,6 +48,8 @@ pub struct RecoveredFaces {
     pub neighbors: Table<i32>,
     /// The row of the face opposite each vertex, -1 if there is none, (t, 4).
     pub walls: Table<i32>,
+    /// The cell of each tetrahedron, from 0: faces separate cells, (t,).
+    pub cells: Column<i32>,
     /// The number of points that were added.
     pub nadded: usize,
     /// What happened.
@@ -77,18 +82,43 @@ pub fn recover_faces<'py>(
         })
     };
     let task = task()?;
-    let made = watched(py, |watch| recover(task, watch))?;
-    arrays_of(py, made, task.points.len())
+    let (made, cells) = watched(py, |watch| {
+        let made = recover(task, watch)?;
+        let cells = cells_of(&made, watch)?;
+        Ok::<_, Error>((made, cells))
+    })?;
+    arrays_of(py, made, cells, task.points.len())
+}
+
+/// The component of each tetrahedron between faces.
+fn cells_of(made: &Recovered, watch: &Watch) -> Result<Vec<i32>, Error> {
+    let mut open = copied(&made.neighbors)?;
+    for (across, face) in open
+        .as_flattened_mut()
+        .iter_mut()
+        .zip(made.walls.as_flattened())
+    {
+        if *face >= 0 {
+            *across = -1;
+        }
+    }
+    labels(&filled(open.len(), true)?, &open, watch)
 }
 
 /// The result as Python arrays.
-fn arrays_of(py: Python<'_>, made: Recovered, given: usize) -> Outcome<RecoveredFaces> {
+fn arrays_of(
+    py: Python<'_>,
+    made: Recovered,
+    cells: Vec<i32>,
+    given: usize,
+) -> Outcome<RecoveredFaces> {
     Ok(RecoveredFaces {
         nadded: made.points.len().saturating_sub(given),
         points: table(py, made.points)?,
         tetrahedra: table(py, made.tetrahedra)?,
         neighbors: table(py, made.neighbors)?,
         walls: table(py, made.walls)?,
+        cells: column(py, cells),
         counts: Py::new(py, counts_of(made.counts))?,
         crowded: numbers(py, made.crowded),
     })

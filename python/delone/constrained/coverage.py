@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from delone._base.types import Bools, Indices, Rows
     from delone._core import ConstrainedTriangulation
 
-__all__ = ["beside", "closed_rings", "containing", "first_polygon", "odd_pairs"]
+__all__ = ["beside", "closed_rings", "containing", "first_polygons", "odd_pairs"]
 
 
 def closed_rings(ends: Indices, geometries: Indices, rings: Bools) -> Bools:
@@ -36,18 +36,23 @@ def closed_rings(ends: Indices, geometries: Indices, rings: Bools) -> Bools:
     return closed
 
 
-def first_polygon(
-    made: ConstrainedTriangulation, geometries: Indices, component: Indices, sides: Bools
-) -> Indices:
-    """Return the first geometry whose rings contain each component (even-odd rule), or -1.
+def first_polygons(
+    made: ConstrainedTriangulation, geometries: Indices, sides: Bools
+) -> tuple[Indices, Indices]:
+    """Return the component of each triangle, and the first geometry that contains each component.
 
-    `geometries` contains the geometry of each row of segments, `sides` those of closed rings.
+    -1 for none. Rings contain what they wind around an odd number of times. `geometries` contains
+    the geometry of each row of segments, `sides` those of closed rings.
     """
-    inside, polygon = containing(made, np.where(sides, geometries, -1), component).T
+    covers = made.source_start, made.source, np.where(sides, geometries, np.int32(-1))
+    component, pairs = _core.components_in_polygons2(
+        made.simplices, made.neighbors, made.constrained, made.segments, covers
+    )
+    inside, polygon = pairs.T
     found = np.full(int(component.max(initial=-1)) + 1, -1, dtype=np.int32)
     # If an index is repeated, the last value assigned remains.
     found[inside[::-1]] = polygon[::-1]
-    return found
+    return component, found
 
 
 def containing(

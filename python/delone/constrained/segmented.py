@@ -147,30 +147,33 @@ class Segmented(segments.SegmentArrays, PointTriangulation):
         holes, boundary = self._given.holes, self._options.boundary
         if boundary == "hull" and not len(holes):
             return None, {}
-        tiling, component = self._tiles(), self._components()
-        found = {"_component": component}
-        removed = np.zeros(int(component.max()) + 1, dtype=bool)
-        if boundary == "outline":
-            removed |= regions.outside(tiling, component)
-        elif boundary == "polygons":
-            found["_polygons"] = self._first_polygons(component)
-            removed |= found["_polygons"] < 0
+        if boundary == "polygons":
+            component, polygons = self._first_polygons()
+            found = {"_component": component, "_polygons": polygons}
+            removed = polygons < 0
+        else:
+            component = self._components()
+            found = {"_component": component}
+            removed = np.zeros(int(component.max()) + 1, dtype=bool)
+            if boundary == "outline":
+                removed = regions.outside(self._tiles(), component)
         if len(holes):
             triangle, on_segment = self._located(holes)
             removed[component[triangle[(triangle >= 0) & ~on_segment]]] = True
         return removed[component] if removed.any() else None, found
 
-    def _first_polygons(self, component: Indices) -> Indices:
+    def _first_polygons(self) -> tuple[Indices, Indices]:
+        """Return the component of each triangle of the hull, and the polygon of each component."""
         origin, npoints = self._given.origin, len(self._points)
         ends = vertices_of(self._made.duplicates, npoints)[self._given.segments]
         sides = coverage.closed_rings(ends, origin.geometries, origin.rings)
-        return coverage.first_polygon(self._made, origin.geometries, component, sides)
+        return coverage.first_polygons(self._made, origin.geometries, sides)
 
     @property
     @kept
     def _polygons(self) -> Indices:
         """The first polygon that contains each component, or -1."""
-        return self._first_polygons(self._component)
+        return self._first_polygons()[1]
 
     def _tiles(self) -> regions.Tiling:
         made = self._made

@@ -113,8 +113,6 @@ class Sizing:
 
     def estimate(self, domain: Domain, samples: Samples | None) -> float:
         """Return an estimate of the number of triangles that the sizes alone require."""
-        if samples is None and not self.varies and np.isinf(self._by_region).all():
-            return 0.0
         inside = np.flatnonzero(domain.labels >= 0)
         areas = measures.sizes(domain.points, domain.simplices[inside])
         caps = self.at(_centers(domain, inside), domain.labels[inside])
@@ -129,6 +127,8 @@ class Sizing:
 
     def require_within(self, domain: Domain, samples: Samples | None, max_points: int) -> None:
         """Raise an error if even triangles as large as allowed need more points than the limit."""
+        if samples is None and self._is_ample(domain, max_points):
+            return
         triangles = self.estimate(domain, samples)
         least = triangles * _SHARE / 2 - len(domain.points)
         if least > max_points:
@@ -139,6 +139,13 @@ class Sizing:
                 limit=max_points,
                 found=int(min(least, 2**62)),
             )
+
+    def _is_ample(self, domain: Domain, max_points: int) -> bool:
+        """Whether the smallest triangles could fill the bounding box within half of the limit."""
+        least = float(self._by_region.min(initial=math.inf))
+        with np.errstate(over="ignore"):
+            width, height = np.ptp(domain.points, axis=0).tolist()
+        return math.isfinite(width * height) and width * (height / least) < max_points
 
 
 class Samples:

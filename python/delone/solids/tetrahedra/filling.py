@@ -17,7 +17,7 @@ from delone._base.arrays import (
     as_workers,
 )
 from delone._base.counting import counted, listed
-from delone._tiling.space.locking import Sides, cells, directions
+from delone._tiling.space.locking import Sides, directions
 from delone.errors import (
     BudgetExceededError,
     CrowdedFacesError,
@@ -261,6 +261,8 @@ class _Everything(NamedTuple):
     tiling: Tiling
     # (m, 4): the row of the face opposite each corner, or -1.
     walls: Indices
+    # (m,): the cell between faces that each tetrahedron is in.
+    cell: Indices
     nadded: int
     counts: RecoveryCounts
 
@@ -275,7 +277,7 @@ class _Solid(NamedTuple):
     def of(cls, found: _Everything) -> _Solid:
         tiling, walls = found.tiling, found.walls
         turned = directions(tiling.simplices, tiling.faces, walls)
-        return cls(Sides(walls, turned), cells(tiling.neighbors, walls >= 0))
+        return cls(Sides(walls, turned), found.cell)
 
 
 class _Stages(NamedTuple):
@@ -369,7 +371,7 @@ class _Stages(NamedTuple):
         rows = np.concatenate((used, len(points) + np.arange(len(further)))).astype(np.int32)
         everywhere = np.concatenate((points, further))
         tiling = Tiling(everywhere, rows[made.tetrahedra], made.neighbors, parts.faces)
-        return _Everything(tiling, made.walls, made.nadded, made.counts)
+        return _Everything(tiling, made.walls, made.cells, made.nadded, made.counts)
 
     def _advice(self) -> str:
         """Suggest the option that adds fewer points, unless it was chosen."""
