@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._base.arrays import as_plain_array, require_integers, wrong_shape
-from delone._base.masks import refuse_hidden
+from delone._base.arrays import as_plain_array, refuse_hidden, require_integers, wrong_shape
 from delone.errors import DtypeError, InputError
 
 if TYPE_CHECKING:

@@ -22,9 +22,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import delaunay
-from delone._base.arrays import wrong_shape
+from delone._base.arrays import is_masked, wrong_shape
 from delone._base.extras import require
-from delone._base.masks import is_masked
 from delone._tiling.higher.dimension import MOST
 from delone.compat.qhull import DimensionError, QhullError, as_low_points, unboxed, unmasked
 from delone.compat.scipy_delaunay import Delaunay

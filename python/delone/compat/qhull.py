@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import delaunay
-from delone._base.arrays import as_points, as_vectors
-from delone._base.masks import is_masked
+from delone._base.arrays import as_points, as_vectors, is_masked
 from delone._tiling.plane import topology
 from delone.compat.furthest import furthest_site as furthest_triangles
 from delone.compat.qhull_options import DELAUNAY, QhullOptionError, QhullOptions

@@ -36,8 +36,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_plain_array, wrong_shape
-from delone._base.masks import is_masked
+from delone._base.arrays import as_plain_array, is_masked, wrong_shape
 from delone._base.values import require_real, require_shape
 from delone._tiling.higher.dimension import MOST
 from delone._tiling.higher.rational import kernel

@@ -27,8 +27,8 @@ from delone.io.tetgen import SECOND
 from delone.solids.surface import check_surface
 from delone.solids.surface.check import as_faces
 from delone.solids.tetmesh.tetmesh import TetMesh
+from delone.solids.tetrahedra.arguments import given
 from delone.solids.tetrahedra.filling import tetrahedralize
-from delone.solids.tetrahedra.sources import given
 
 if TYPE_CHECKING:
     import os

@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._base.arrays import as_points
+from delone._base.arrays import as_points, refuse_masks
 from delone._base.counting import agreed
-from delone._base.masks import refuse_masks
 from delone.errors import DtypeError, InputError, NonFiniteError, ShapeError
 
 if TYPE_CHECKING:

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._base.arrays import as_plain_array, as_points, as_queries
+from delone._base.arrays import as_plain_array, as_points, as_queries, refuse_hidden
 from delone._base.immutable import own_copy
-from delone._base.masks import refuse_hidden
 from delone._base.values import refuse_rounded, require_real
 from delone._tiling.complex import Stored
 from delone.constrained import ConstrainedDelaunay

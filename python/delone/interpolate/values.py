@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._base.arrays import as_plain_array, wrong_shape
+from delone._base.arrays import as_plain_array, refuse_hidden, wrong_shape
 from delone._base.counting import agreed, counted
-from delone._base.masks import refuse_hidden
 from delone._base.values import refuse_rounded, require_real
 from delone.errors import ConflictingValuesError, InputError, NonFiniteError
 

@@ -11,9 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._base.arrays import as_callback, as_count, as_flag, as_limit, as_plain_array, as_workers
+from delone._base.arrays import (
+    as_callback,
+    as_count,
+    as_flag,
+    as_limit,
+    as_plain_array,
+    as_workers,
+    refuse_masks,
+)
 from delone._base.counting import listed
-from delone._base.masks import refuse_masks
 from delone._base.values import as_labels, require_shape
 from delone.constrained import geodata
 from delone.constrained.delaunay import ConstrainedDelaunay

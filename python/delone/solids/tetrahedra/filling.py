@@ -30,7 +30,7 @@ from delone.errors import (
 from delone.solids.surface import check_surface, imprint_surface
 from delone.solids.tetmesh.refinement import as_bounds, refined
 from delone.solids.tetmesh.tetmesh import TetMesh
-from delone.solids.tetrahedra import arguments, seeds, sources
+from delone.solids.tetrahedra import arguments, seeds
 from delone.solids.tetrahedra.covering import counts_of, of_imprint, parts_of, reported
 from delone.solids.tetrahedra.inside import RULES, inner_cells
 from delone.solids.tetrahedra.recutting import recut, uncut
@@ -243,7 +243,7 @@ def tetrahedralize(
             max_points=max_points,
             progress=None,
         )
-    surface = sources.given(points, faces, face_markers, holes, regions)
+    surface = arguments.given(points, faces, face_markers, holes, regions)
     task = arguments.task(surface, extra_points, max_points, workers)
     cut = None
     if as_flag(imprint, name="imprint"):
