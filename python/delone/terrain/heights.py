@@ -73,7 +73,8 @@ def claims_of_lines(mesh: ConstrainedDelaunay, z: Floats) -> tuple[Claims, Rows]
 
     `z` contains the height of each row of points.
     """
-    crossings, through = mesh.report.crossings, mesh.report.through
+    # The whole report would list repeated and overlapping segments as well.
+    crossings, through = mesh._made.crossings, mesh._made.through
     row = np.concatenate((crossings[:, 0], crossings[:, 1], through[:, 0]))
     vertex = np.concatenate((crossings[:, 2], crossings[:, 2], through[:, 1]))
     return _along(mesh, z, row, vertex), row.astype(np.int64)
