@@ -501,3 +501,34 @@ fn a_side_is_also_where_it_rises_above_its_chord() {
         }
     }
 }
+
+#[test]
+fn sides_that_cross_opposite_each_other_do_not() {
+    let place = |[lon, lat]: [f64; 2]| -> Point3 {
+        let (s, c) = lon.to_radians().sin_cos();
+        let (z, r) = lat.to_radians().sin_cos();
+        [r * c, r * s, z]
+    };
+    let cell = |[west, east]: [f64; 2], lat: f64| -> Vec<Point3> {
+        let corners = [[west, -lat], [east, -lat], [east, lat], [west, lat]];
+        corners.map(place).to_vec()
+    };
+    // The western sides of the others cross the circles of the long sides where those are on the other
+    // side of the sphere.
+    let long = Flat::of(&[cell([-80.0, 80.0], 1.0)]);
+    let others = Flat::of(&[cell([-115.0, -60.0], 20.0), cell([-85.0, -60.0], 20.0)]);
+    let found = shared(&long.grid(), &others.grid());
+    assert_eq!(found.cells, [0, 1]);
+    assert!((found.areas[0] / found.areas[1] - 1.0).abs() < 1e-14);
+}
+
+#[test]
+fn a_star_that_turns_left_at_all_corners_is_not_convex() {
+    let corner = |k: usize| {
+        let (s, c) = (k as f64 * 0.8 * PI + 0.1).sin_cos();
+        [1.0, 0.3 * c, 0.3 * s]
+    };
+    let star = Flat::of(&[(0..5).map(corner).collect()]);
+    let found = check(&star.grid(), true, 1, &Watch::idle()).expect("valid grid");
+    assert_eq!(found.faults, [Fault::Crossing as u8]);
+}
