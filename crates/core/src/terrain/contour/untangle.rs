@@ -328,7 +328,10 @@ mod tests {
             for i in 0..side {
                 for j in 0..side {
                     let (x, y) = (f64::from(i), f64::from(j));
-                    points.push([1e9 + unit * (5.0 * x + 3.0 * y), 1e9 + unit * (3.0 * x + 2.0 * y)]);
+                    points.push([
+                        1e9 + unit * (5.0 * x + 3.0 * y),
+                        1e9 + unit * (3.0 * x + 2.0 * y),
+                    ]);
                     heights.push(f64::from((i * 7 + j * 5 + i * j) % 11));
                 }
             }
