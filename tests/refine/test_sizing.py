@@ -224,3 +224,10 @@ def test_needles_stay_closed_while_sizes_vary(gap: float) -> None:
     # With angles of 20 degrees everywhere in the gap, there would be hundreds of thousands.
     assert mesh.nsimplex < 3000
     assert not mesh.report.exhausted
+
+
+@pytest.mark.parametrize("max_points", [10, 1000, 24_000])
+def test_a_limit_that_the_sizes_exceed_is_an_error_before_the_work(max_points: int) -> None:
+    square = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (1, 1), (0, 1)]]}
+    with pytest.raises(delone.BudgetExceededError, match="the sizes require about"):
+        delone.mesh(square, max_area=2e-5, max_points=max_points)
