@@ -53,8 +53,6 @@ def located(
 
     Segments include their ends.
     """
-    if not len(seeds):
-        return np.empty(0, dtype=np.int32), np.empty(0, dtype=bool)
     points, simplices, neighbors, constrained = tiling
     if not len(seeds):
         # Without a check of all triangles.
