@@ -171,7 +171,8 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         planar : bool, optional
             Whether longitudes and latitudes are intentional, without a warning.
         workers : int, optional
-            Maximum number of threads; by default one per core.
+            Maximum number of threads, also of contours, bands and volumes; by default one per
+            core. Results do not depend on it.
 
         Returns
         -------
