@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import pickle
 from pathlib import Path
@@ -12,6 +13,7 @@ import pytest
 
 import delone
 from delone import _core, sphere
+from delone.errors import InputError
 from delone.sphere import Grid, Overlaps
 from tiers import seeds
 
@@ -286,6 +288,29 @@ def test_triangles_that_touch_share_nothing() -> None:
     vectors = hard("triangles-that-meet-at-the-equator")
     upper, lower = (Grid.from_mesh(xyz=[part], merge=0) for part in np.split(vectors, [4]))
     assert Overlaps(upper, lower).areas.size == Overlaps(lower, upper).areas.size == 0
+
+
+@pytest.mark.parametrize("step", [0.5, 1, 2.5, 7.5, 20, 90, 120])
+@pytest.mark.parametrize("shift", [5e-14, 1e-11, 2e-9, 1 / 3, 20 / 3, -1e-13, 180.1])
+def test_full_turns_whose_last_meridian_is_rounded(step: float, shift: float) -> None:
+    """A shift plus 360 degrees is rounded, so a turn ends before or after its start."""
+    given = np.arange(0, 360 + step / 2, step)
+    latitudes = np.array([-90.0, -20.0, 0.0, 90.0])
+    plain, shifted = Grid.from_lonlat(given, latitudes), Grid.from_lonlat(given + shift, latitudes)
+    cells = Grid.from_lonlat(np.arange(-175.0, 180.0, 50.0), [-80.0, 10.0, 75.0])
+    for source, target in itertools.permutations((plain, shifted), 2):
+        found = Overlaps(source, target)
+        assert found.areas.sum() == pytest.approx(4 * np.pi, rel=1e-13)
+        assert found.covered_source == pytest.approx(1, rel=1e-9)
+        assert found.covered_target == pytest.approx(1, rel=1e-9)
+    for source in (plain, shifted):
+        assert Overlaps(source, cells).covered_target == pytest.approx(1, rel=1e-9)
+    assert shifted.areas.sum() == pytest.approx(4 * np.pi, rel=1e-13)
+
+
+def test_more_than_a_turn_is_refused() -> None:
+    with pytest.raises(InputError, match="turn"):
+        _ = Overlaps(Grid.from_lonlat([0.0, 200.0, 360.0, 370.0], [0.0, 10.0]), degrees(90))
 
 
 @pytest.mark.parametrize("size", [217, 184])

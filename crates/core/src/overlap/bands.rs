@@ -154,9 +154,15 @@ impl Rows<'_> {
         if given.len() < 2 || total > std::f64::consts::TAU + 1e-9 {
             return Err(Error::Shape(format!("row {row} is not within one turn")));
         }
-        // The rest of the turn has no cells.
+        // The rest of the turn has no cells. Rounding may put the last meridian slightly beyond the first; the
+        // rest would then be almost a whole turn, so the last column ends at the first meridian.
         let (end, start) = (leveled2(given[given.len() - 1]), lon[0]);
-        let closed = turn2(end, start) == Sign::Zero && end[0] * start[0] + end[1] * start[1] > 0.0;
+        let near = end[0] * start[0] + end[1] * start[1] > 0.0;
+        let beyond = near && total > std::f64::consts::PI && turn2(start, end) == Sign::Positive;
+        if beyond && turn2(lon[lon.len() - 1], start) != Sign::Positive {
+            return Err(Error::Shape(format!("row {row} is not within one turn")));
+        }
+        let closed = beyond || near && turn2(end, start) == Sign::Zero;
         if !closed {
             let gap = angle2(end, start).rem_euclid(std::f64::consts::TAU);
             let middle = |share: f64| {
