@@ -165,6 +165,50 @@ def test_what_follows_from_simplices(d: int, k: int, n: int) -> None:
     assert len(mesh.vertex_neighbor_vertices[1]) == 2 * len(mesh.edges)
 
 
+@pytest.mark.parametrize("k", [2, 3])
+@pytest.mark.parametrize("power", [0, 2, 4, 8, 30, 140])
+def test_measures_of_thin_simplices_have_small_errors(k: int, power: int) -> None:
+    """In a coordinate flat, measures are those of its columns, whatever their scales."""
+    random = np.random.default_rng((k, power))
+    scales = 10.0 ** np.array([-power, power, 0])[:k]
+    plain = random.random((9, k)) * scales
+    points = np.column_stack((plain, np.full((9, 5 - k), 7.0)))
+    mesh, other = Delaunay(points, flat="project"), Delaunay(plain)
+    order = [np.lexsort(np.sort(each.simplices, axis=1).T) for each in (mesh, other)]
+    assert np.array_equal(
+        *(np.sort(m.simplices[o], axis=1) for m, o in zip((mesh, other), order, strict=True))
+    )
+    sizes = other.areas if k == 2 else other.volumes
+    assert mesh.volumes[order[0]] == pytest.approx(sizes[order[1]], rel=1e-11)
+    for own, want in zip(
+        mesh.circumcenters[order[0]].T, other.circumcenters[order[1]].T, strict=False
+    ):
+        assert own == pytest.approx(want, rel=1e-9)
+    assert mesh.circumcenters[:, k:] == pytest.approx(7.0, rel=1e-12)
+    hull, flat = ConvexHull(points, flat="project"), ConvexHull(plain)
+    assert hull.volume == pytest.approx(flat.volume, rel=1e-11)
+    assert hull.area == pytest.approx(flat.area, rel=1e-11)
+    normals = [
+        each.equations[np.lexsort(np.sort(each.simplices, axis=1).T)] for each in (hull, flat)
+    ]
+    assert normals[0][:, :k] == pytest.approx(normals[1][:, :k], abs=1e-12)
+
+
+def test_measures_at_the_ends_of_the_range() -> None:
+    """Squares and products of steps overflow and underflow, results do not or are infinite."""
+    for power in (-1070, -700, 600, 1000):
+        flat = 2.0**power * np.array(
+            [(0, 0, 0, 0), (6, 0, 0, 6), (0, 4, 4, 0), (6, 4, 4, 6), (1, 1, 1, 1)]
+        )
+        mesh = Delaunay(flat, flat="project")
+        one = Delaunay(flat / 2.0**power, flat="project")
+        assert np.array_equal(mesh.simplices, one.simplices)
+        with np.errstate(over="ignore", under="ignore"):
+            want = np.ldexp(one.volumes, 2 * power)
+        assert mesh.volumes == pytest.approx(want, rel=1e-12, abs=5e-324)
+        assert np.isfinite(mesh.circumcenters).all()
+
+
 def test_queries_are_projected_along_the_other_axes() -> None:
     # The third and fourth coordinate follow from the first two.
     low = np.random.default_rng(1).integers(0, 9, (20, 2)).astype(float)

@@ -9,11 +9,24 @@
 
 use crate::base::error::{Error, Result};
 
-use super::outline::{Met, Outline};
+use super::sides::Outline;
 use super::signs::Moved;
 
 /// Corners of a cell at most: of more, those near the other cell are looked for first.
 const MOST: usize = 16;
+
+/// What two cells share.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Met {
+    /// Nothing.
+    Nothing,
+    /// All of the first cell.
+    First,
+    /// All of the second cell.
+    Second,
+    /// The result of the sum.
+    Part,
+}
 
 /// Takes the sides of what two cells share.
 pub trait Pieces {

@@ -17,6 +17,7 @@ use crate::base::error::{Error, Result};
 use crate::base::memory::push;
 use crate::base::watch::{Pace, Watch};
 
+pub use super::convex::Met;
 use super::convex::{self, Pieces};
 pub use super::sides::Outline;
 use super::sides::meeting;
@@ -46,19 +47,6 @@ pub trait Sum: Pieces {
     fn crossing(&mut self, f: u32, leaves: bool);
     /// A side of the second cell ends in the first one.
     fn second(&mut self, f: u32);
-}
-
-/// What two cells share.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Met {
-    /// Nothing.
-    Nothing,
-    /// All of the first cell.
-    First,
-    /// All of the second cell.
-    Second,
-    /// The result of the sum.
-    Part,
 }
 
 /// Buffers.

@@ -15,9 +15,10 @@ import numpy as np
 
 from delone import _core, predicates
 from delone._base.arrays import as_workers
+from delone._tiling.higher import exact_flats
 
 if TYPE_CHECKING:
-    from delone._base.types import Floats, Indices, Rows
+    from delone._base.types import Bools, Floats, Indices, Rows
     from delone.errors import DegenerateInputError
 
 __all__ = ["Flat", "advised", "axes_of", "circumcenters", "flat_of", "normals", "sizes"]
@@ -26,6 +27,10 @@ __all__ = ["Flat", "advised", "axes_of", "circumcenters", "flat_of", "normals", 
 _LEAST = 2
 # Maximum number of coordinates of points.
 _MOST = 8
+# Simplices with a height below this share of their longest step are measured by fractions.
+_THIN = 2.0**-12
+# The same holds for results near the ends of the range of doubles.
+_SMALL = 2.0**-960
 
 
 class Flat:
@@ -86,37 +91,55 @@ def orientations(points: Floats, simplices: Indices) -> Indices:
 def sizes(points: Floats, simplices: Indices) -> Floats:
     """Return the measures of simplices of fewer dimensions, rounded: products of heights."""
     k = simplices.shape[1] - 1
+    _, r, unit, doubtful = _orthogonal(points, simplices)
     with np.errstate(all="ignore"):
-        steps = points[simplices[:, 1:]] - points[simplices[:, :1]]
-        heights = np.linalg.qr(steps.swapaxes(1, 2), mode="r")
-        found: Floats = np.abs(np.diagonal(heights, axis1=1, axis2=2)).prod(axis=1)
-        found /= math.factorial(k)
+        found: Floats = np.abs(np.diagonal(r, axis1=1, axis2=2)).prod(axis=1) / math.factorial(k)
+        for _ in range(k):
+            found = found * (2 * unit)
+        doubtful |= ~((found > _SMALL) & (found < 1 / _SMALL))
+    for row in np.flatnonzero(doubtful).tolist():
+        found[row] = exact_flats.size(points[simplices[row]])
     return found
 
 
 def circumcenters(points: Floats, simplices: Indices) -> Floats:
     """Return the centers in the flat of the spheres through the corners, rounded, (m, d)."""
-    first = points[simplices[:, 0]]
+    q, r, unit, doubtful = _orthogonal(points, simplices)
+    found = np.full((len(simplices), points.shape[1]), np.nan)
+    rest = ~doubtful
     with np.errstate(all="ignore"):
-        # Halved and scaled for each simplex, so that no difference or square overflows.
-        steps = points[simplices[:, 1:]] / 2 - first[:, None] / 2
-        unit = np.abs(steps).max(axis=(1, 2))[:, None]
-        steps = steps / unit[:, None]
-        q, r = np.linalg.qr(steps.swapaxes(1, 2))
-        squares = (steps * steps).sum(axis=2)[..., None]
-        center = (q @ np.linalg.solve(r.swapaxes(1, 2), squares))[..., 0]
-        found: Floats = first + unit * center
+        # The squared lengths of the steps, which are the columns of q r.
+        squares = (r[rest] ** 2).sum(axis=1)[..., None]
+        center = (q[rest] @ np.linalg.solve(r[rest].swapaxes(1, 2), squares))[..., 0]
+        found[rest] = points[simplices[rest, 0]] + unit[rest, None] * center
+    for row in np.flatnonzero(doubtful | ~np.isfinite(found).all(axis=1)).tolist():
+        found[row] = exact_flats.center(points[simplices[row]])
     return found
 
 
 def normals(points: Floats, facets: Indices, inside: Indices) -> Floats:
     """Return outer unit normals of facets that are directions of the flat, (h, d)."""
-    first = points[facets[:, :1]]
-    with np.errstate(all="ignore"):
-        steps = np.concatenate((points[facets[:, 1:]] - first, points[inside][:, None] - first), 1)
-        q, r = np.linalg.qr(steps.swapaxes(1, 2))
-        found: Floats = -q[..., -1] * np.sign(r[:, -1, -1])[:, None]
+    q, r, _, doubtful = _orthogonal(points, np.column_stack((facets, inside)))
+    found: Floats = -q[..., -1] * np.sign(r[:, -1, -1])[:, None]
+    for row in np.flatnonzero(doubtful).tolist():
+        found[row] = exact_flats.normal(points[facets[row]], points[inside[row]])
     return found
+
+
+def _orthogonal(points: Floats, simplices: Indices) -> tuple[Floats, Floats, Floats, Bools]:
+    """Return Q and R of half the steps from the first corners, and the units in which they are.
+
+    Also return for which simplices rounding errors may be large: thin ones, with a small height.
+    """
+    with np.errstate(all="ignore"):
+        # Halved and scaled for each simplex, so that no difference or square overflows.
+        steps = points[simplices[:, 1:]] / 2 - points[simplices[:, :1]] / 2
+        unit = np.abs(steps).max(axis=(1, 2))
+        steps = np.nan_to_num(steps / unit[:, None, None])
+        q, r = np.linalg.qr(steps.swapaxes(1, 2))
+        heights = np.abs(np.diagonal(r, axis1=1, axis2=2))
+        doubtful: Bools = ~((heights.min(axis=1) > _THIN) & (unit > _SMALL))
+    return q, r, unit, doubtful
 
 
 def _pivots(rows: list[list[Fraction]]) -> list[int]:
