@@ -1,8 +1,8 @@
-"""Four and more dimensions: time and memory of triangulations beside SciPy's, in fresh processes.
+"""Four and more dimensions: time and memory compared with SciPy, in fresh processes.
 
-Each call is the first one of a process of its own; the peers take turns, round by round. Columns
-are the number of simplices, the least processor seconds, the most memory that the call needs at its
-peak, and what the process holds afterward with the result, each beyond what it held before.
+Each call runs in its own process; the peers take turns in each round. The columns are the number
+of simplices, the least processor seconds, the peak memory during the call, and the memory that
+the process keeps with the result. Both are in addition to what the process held before the call.
 ``python benchmarks/higher.py --help`` has options.
 """
 

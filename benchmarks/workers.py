@@ -1,7 +1,8 @@
 """One and two threads, class by class: how many times faster two are.
 
-Each job runs from input arrays to finished results, with one thread and with two in turn, after a
-first call of each that is not counted. The arrays are compared: they must be the same.
+Jobs run with one thread and with two in turn, after a first call of each that is not counted. The
+arrays are compared: they must be the same. Queries, contours, bands, volumes and overlaps start
+from finished triangulations and grids, all other jobs from arrays.
 ``python benchmarks/workers.py --help`` has options.
 """
 
