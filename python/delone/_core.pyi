@@ -1798,9 +1798,9 @@ def components_in_polygons2(
     segments: NDArray[np.int32],
     covers: tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32]],
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """The components of triangles that share unconstrained edges, and pairs of a component
-    and a polygon whose rings contain it, ascending, (k, 2); what no triangle covers is
-    in none.
+    """The component of each triangle, and pairs of a component and a polygon whose rings
+    contain it, ascending, (k, 2). Triangles that share unconstrained edges are in one
+    component; what is outside the triangles is in no polygon.
     """
 
 def components_inside2(
@@ -2008,7 +2008,7 @@ def hull3(points: NDArray[np.float64]) -> Hull3 | None:
     """The hull of 3-D points; None if they span no volume."""
 
 def hull_in_flat(points: NDArray[np.float64], rest: NDArray[np.float64]) -> HullN:
-    """The convex hull in a flat of points as those of `triangulate_in_flat`."""
+    """The convex hull in a flat of points, given as to `triangulate_in_flat`."""
 
 def hull_n(points: NDArray[np.float64]) -> HullN:
     """The convex hull of points with four to eight coordinates."""
@@ -2387,8 +2387,8 @@ def triangulate3(points: NDArray[np.float64], workers: int) -> Triangulation:
     """The Delaunay triangulation of 3-D points."""
 
 def triangulate_in_flat(points: NDArray[np.float64], rest: NDArray[np.float64]) -> Triangulation:
-    """The same of points in a flat, given by their coordinates along its axes and, padded
-    with zeros to eight, the others.
+    """The Delaunay triangulation of points in a flat: `points` are their coordinates along
+    its axes, and `rest` the others, padded with zeros to eight, (n, 8).
     """
 
 def triangulate_n(points: NDArray[np.float64]) -> Triangulation:
@@ -2405,9 +2405,7 @@ def validate_in_flat(
     simplices: NDArray[np.int32],
     neighbors: NDArray[np.int32],
 ) -> Faults:
-    """The same of points in a flat, given by their coordinates along its axes and, padded
-    with zeros to eight, the others.
-    """
+    """The faults of a triangulation of points in a flat, given as to `triangulate_in_flat`."""
 
 def validate_periodic2(
     points: NDArray[np.float64],

@@ -39,7 +39,7 @@ pub fn linkage(
         in_range(edges, 0, points.len(), "edges")?;
         in_range(duplicates, 0, points.len(), "duplicates")?;
         if edges.len() + duplicates.len() + 1 != points.len() {
-            return Err(Error::Shape("the edges must be those of a tree: one less than points, with duplicates".into()).into());
+            return Err(Error::Shape("the edges must be those of a tree: with the duplicates, one fewer than the points".into()).into());
         }
         let found = watched(py, |watch| {
             let links = cluster::single_links(points, edges, duplicates, watch)?;
@@ -64,7 +64,7 @@ pub fn condensed(
     in_dimension!(columns(&points), D, N => {
         let points: &[[f64; D]] = rows(&points, "points")?;
         if points.len() < 2 || k < 1 || k > points.len() || number.is_nan() || number < 0.0 {
-            return Err(Error::Shape("a condensed tree needs two points or more, k from 1 to their number, and a number of at least 0".into()).into());
+            return Err(Error::Shape("a condensed tree needs at least two points, k from 1 to their number, and number of at least 0".into()).into());
         }
         let (found, heights, [below, up_to]) = watched(py, |watch| {
             let tree = Tree::of(points, workers, watch)?;

@@ -260,8 +260,9 @@ pub fn components_inside2(
     table(py, found)
 }
 
-/// The components of triangles that share unconstrained edges, and pairs of a component and a
-/// polygon whose rings contain it, ascending, (k, 2); what no triangle covers is in none.
+/// The component of each triangle, and pairs of a component and a polygon whose rings contain it,
+/// ascending, (k, 2). Triangles that share unconstrained edges are in one component; what is outside
+/// the triangles is in no polygon.
 #[pyfunction]
 pub fn components_in_polygons2(
     py: Python<'_>,

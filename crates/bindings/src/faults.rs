@@ -111,8 +111,7 @@ pub fn validate<'py>(
     }
 }
 
-/// The same of points in a flat, given by their coordinates along its axes and, padded with zeros to
-/// eight, the others.
+/// The faults of a triangulation of points in a flat, given as to `triangulate_in_flat`.
 #[pyfunction]
 pub fn validate_in_flat(
     py: Python<'_>,

@@ -105,17 +105,17 @@ pub fn answered<T: Send>(
     watched(py, work)
 }
 
-/// What smoothing moves vertices to, by its name.
+/// The target of smoothing, by its name.
 pub fn target_of(name: &str) -> Result<Target> {
     let names = Target::NAMES.map(|(name, _)| name);
     let wrong = || Error::Shape(format!("target must be one of {names:?}, got {name:?}"));
     Target::named(name).ok_or_else(wrong)
 }
 
-/// The error for neighbors of other simplices.
+/// The error for neighbors that do not match the simplices.
 pub fn not_beside() -> Error {
     Error::Shape(
-        "neighbors and simplices differ in length: each simplex needs its row of neighbors".into(),
+        "neighbors and simplices differ in length: each simplex needs a row of neighbors".into(),
     )
 }
 
@@ -142,8 +142,7 @@ pub fn finite_weights<'a>(
     weights: Option<&'a PyReadonlyArray1<'_, f64>>,
     n: usize,
 ) -> Result<&'a [f64]> {
-    let wrong =
-        || Error::Shape("weights must have one finite number for each of the points".into());
+    let wrong = || Error::Shape("weights must have one finite number for each point".into());
     let found = weights_of(weights, n).map_err(|_| wrong())?;
     if found.iter().all(|w| w.is_finite()) {
         return Ok(found);

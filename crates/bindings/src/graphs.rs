@@ -36,7 +36,7 @@ impl Adjacency<'_> {
         are_starts(starts, neighbors.len())?;
         if starts.len() != points.len() + 1 {
             return Err(Error::Shape(
-                "starts must have one entry for each point, and one more".into(),
+                "starts must have one entry more than there are points".into(),
             ));
         }
         Ok(Skeleton {
@@ -56,7 +56,7 @@ fn region(name: &str, beta: f64) -> Result<Region> {
         "lune" if within => Ok(Region::Lune(beta)),
         "circle" if within => Ok(Region::Arcs(beta)),
         _ => Err(Error::Shape(format!(
-            "the region must be ball, or lune or circle with beta above 1 up to 2; got {name} with {beta}"
+            "the region must be ball, or lune or circle with beta above 1 and at most 2; got {name} with beta {beta}"
         ))),
     }
 }
@@ -166,7 +166,7 @@ pub fn not_longer(
         in_range(edges, 0, points.len(), "edges")?;
         let ends: &[[f64; D]; 2] = rows(&ends, "ends")?
             .try_into()
-            .map_err(|_| Error::Shape("ends must have two rows, those of the segment".into()))?;
+            .map_err(|_| Error::Shape("ends must have two rows: the ends of the segment".into()))?;
         let ends = *ends;
         let found = watched(py, |watch| {
             graphs::not_longer(points, edges, ends, workers, watch)
@@ -234,7 +234,7 @@ pub fn of_triangles2(
             ("ball", _) => Rule::Ball { closed },
             ("circle", true) => Rule::Arcs { beta, closed },
             _ => return Err(Error::Shape(format!(
-                "the rule must be longest, ball, or circle with beta above 1 up to 2; got {name} with {beta}"
+                "the rule must be longest, ball, or circle with beta above 1 and at most 2; got {name} with beta {beta}"
             )).into()),
         };
         (tiling.triangles()?, rule)

@@ -51,7 +51,7 @@ fn barrier_of<'a>(barrier: Option<&'a Closed<'_>>, triangles: usize) -> Result<B
         Ok(closed)
     } else {
         Err(Error::Shape(
-            "barrier must have one row for each of the triangles".into(),
+            "barrier must have one row for each triangle".into(),
         ))
     }
 }
@@ -119,10 +119,9 @@ pub fn smooth_of(
     let slopes = given.gradients.map(|g| flat(g, "gradients"));
     let slopes = slopes.transpose()?;
     if slopes.is_none() & kind.is_none_or(Kind::is_smooth) {
-        return Err(PyValueError::new_err(
-            "gradients are needed for a smooth kind: pass those of the values",
-        )
-        .into());
+        return Err(
+            PyValueError::new_err("smooth kinds need gradients: pass those of the values").into(),
+        );
     }
     let barrier = barrier_of(given.barrier, locator.held.count(py))?;
     let (found, n) = locator.batch(given.xi, given.workers, |batch| {

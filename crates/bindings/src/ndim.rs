@@ -29,8 +29,8 @@ pub fn triangulate_n(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> Outco
     })
 }
 
-/// The same of points in a flat, given by their coordinates along its axes and, padded with zeros to
-/// eight, the others.
+/// The Delaunay triangulation of points in a flat: `points` are their coordinates along its axes, and
+/// `rest` the others, padded with zeros to eight, (n, 8).
 #[pyfunction]
 pub fn triangulate_in_flat(
     py: Python<'_>,
@@ -56,7 +56,7 @@ fn triangulation<const V: usize>(py: Python<'_>, made: Simplices<V>) -> Outcome<
     arrays_of(py, arrays, &made.duplicates, &[])
 }
 
-/// The coordinates of points that the axes of a flat leave out.
+/// The coordinates of points that are not axes of a flat.
 pub fn rest_of<'a>(rest: &'a PyReadonlyArray2<'_, f64>, points: usize) -> Result<&'a [Rest]> {
     let found: &[Rest] = rows(rest, "rest")?;
     if found.len() == points {
@@ -91,7 +91,7 @@ pub fn hull_n(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> Outcome<Hull
     })
 }
 
-/// The convex hull in a flat of points as those of `triangulate_in_flat`.
+/// The convex hull in a flat of points, given as to `triangulate_in_flat`.
 #[pyfunction]
 pub fn hull_in_flat(
     py: Python<'_>,

@@ -17,8 +17,8 @@
 //! (D + 2) u sum |a_ik x^_k| for the products, their sum and A^, (D + 3) u |b_i| for b_i = |a_i|^2 from
 //! rounded differences, and 2 u of the difference: at most (2 D + 8) u (sum |a_ik x^_k| + |b_i|). With
 //! weights, b_i has the rounded difference of two of them as another term, which passes through two
-//! sums, and the sum of both magnitudes is in place of |b_i|. In a flat, this term errs by 6 u before: with
-//! these sums and the difference 10 u, which is below 2 D + 8.
+//! sums, and the sum of both magnitudes is in place of |b_i|. In a flat, this term already errs by 6 u;
+//! with these sums and the difference, that is 10 u, which is below (2 D + 8) u.
 //!
 //! **The value.** A point p with d = p - v_0 has the power P = |d|^2 - x . d. In rounded numbers |d|^2
 //! errs by (D + 2) u |d|^2, x^ . d by (D + 1) u |x^| |d|, the difference by u of both, and x^ in place of x
@@ -26,7 +26,7 @@
 //! |d| <= (|d|^2 / r + r) / 2, so the bound is q0 + q1 |d|^2. It needs no root, and D + 5 in place of
 //! D + 3 pays for its own roundings. With weights, the rounded difference of two is subtracted last:
 //! that errs by u of it, and by u of the result, at most u times the sum of both magnitudes. In a flat,
-//! it errs by 6 u.
+//! the difference errs by 6 u instead of u.
 //!
 //! **Underflow.** Coordinates are as `sites` describes: differences are zero or at least 2^-400. A
 //! product may underflow and err by 2^-1075 only if another factor is tiny. The floors below are larger

@@ -28,7 +28,7 @@ pub type Rest = [f64; MOST];
 /// The most coordinates of points.
 pub const MOST: usize = ROWS - 1;
 
-/// Bits that are added in a flat: the squares of at most six left out coordinates are below 2^(2 bits)
+/// Bits that are added in a flat: the squares of at most six other coordinates are below 2^(2 bits)
 /// together, with two bits to spare.
 const REST_BITS: u32 = 2;
 
@@ -184,7 +184,7 @@ impl<const D: usize, const P: usize> Sites<D, P> {
         std::array::from_fn(|i| minus(&self.scaled[v[i + 1] as usize], o))
     }
 
-    /// The left out coordinates of a point as they were given, if it is in a flat.
+    /// The coordinates of a point that its axes leave out, as they were given, if it is in a flat.
     fn rest_of(&self, p: u32) -> Option<&Rest> {
         self.rest.get(p as usize)
     }
@@ -192,9 +192,9 @@ impl<const D: usize, const P: usize> Sites<D, P> {
     /// The scaled weight of `p` less that of `o`, rounded.
     ///
     /// Lifted heights may be measured from any point of a flat: that changes them by an affine
-    /// function. From `o`, the height of `p` is the square of their distance, of which the left out
-    /// coordinates are a negative weight of `p`. It passes through a product and, in four parts,
-    /// three sums, so with the differences it errs by at most 6 u of itself.
+    /// function. From `o`, the height of `p` is the square of their distance, of which the coordinates
+    /// that are not axes are a negative weight of `p`. It passes through a product and, in four
+    /// parts, three sums, so with the differences it errs by at most 6 u of itself.
     #[inline(always)]
     pub fn weight(&self, p: u32, o: u32) -> f64 {
         if !self.is_lifted {

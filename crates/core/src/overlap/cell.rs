@@ -207,10 +207,10 @@ impl Cell {
 
     /// Whether no corner is to the right of a side, and the ring runs around once.
     ///
-    /// Seen from the center of the sphere, the ring is a polygon in a plane. Where it turns left at each
-    /// corner, it turns around as often as the directions of its sides pass half a turn each, twice for
-    /// each time: seen from `far`, a direction at infinity of such a plane, sides run to the left or to
-    /// the right. Where something is on a side, all corners are compared with all sides.
+    /// Seen from the center of the sphere, the ring is a polygon in a plane. Let `far` be
+    /// a direction at infinity of that plane. If the ring turns left at each corner, then each time that
+    /// it runs around, its sides change twice between having `far` on their left and on their right. If
+    /// a corner or `far` is on the circle of a side, all corners are compared with all sides.
     fn is_convex(&self) -> bool {
         if !self.later.is_empty() {
             return false;
@@ -242,8 +242,8 @@ impl Cell {
         }
     }
 
-    /// The same by all corners and all sides. A ring that runs around several times, with no corner to
-    /// the right of a side, visits the corners of its hull again.
+    /// The same by comparing all corners with all sides. A ring that runs around several times, with no
+    /// corner to the right of a side, visits the corners of its hull again.
     fn is_convex_with_ties(&self) -> bool {
         let count = self.corners.len();
         let distinct = |p: &Corner, q: &Corner| {
@@ -321,8 +321,8 @@ fn has_opposite(ring: &Ring) -> bool {
     })
 }
 
-/// A box that holds a cell of these corners, whether or not something is wrong with it: the box of the
-/// corners and, as the sphere bulges, some more; see [`Cell::extent`].
+/// A box that contains a cell with these corners, even if the cell has faults: the box of the
+/// corners, and some more because the sphere bulges; see [`Cell::extent`].
 pub fn bounds(corners: &[Point3]) -> Extent<3> {
     let directions = corners.iter().map(|&v| {
         let w = leveled(v);

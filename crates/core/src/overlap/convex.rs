@@ -1,18 +1,19 @@
 //! The area that two convex cells with few corners share, on the sphere and in the plane: the usual
 //! case, without lists.
 //!
-//! Each sign is asked for once: on which side of each side of a cell each corner of the other one is,
-//! as bits. They tell which corners are inside the other cell and which sides cross, as in `outline`.
+//! Each sign is computed once and stored as a bit: whether a corner of one cell is to the left of a
+//! side of the other. The bits tell which corners are inside the other cell and which sides cross, as
+//! in `outline`.
 //! A side of a convex cell has at most one piece in another one: from its start, or where it enters, to
-//! its end, or where it leaves. These pieces are the sides of what both share, so that the sum has one
-//! term for each, where a sum over corners and crossings has two for each crossing.
+//! its end, or where it leaves. These pieces are the sides of the shared area, so that the sum has one
+//! term for each; a sum over corners and crossings has two terms for each crossing.
 
 use crate::base::error::{Error, Result};
 
 use super::sides::Outline;
 use super::signs::Moved;
 
-/// Corners of a cell at most: of more, those near the other cell are looked for first.
+/// The maximum number of corners of a cell. With more, sides near the other cell are found first.
 const MOST: usize = 16;
 
 /// What two cells share.
@@ -28,7 +29,7 @@ pub enum Met {
     Part,
 }
 
-/// Takes the sides of what two cells share.
+/// Takes the sides of the area that two cells share.
 pub trait Pieces {
     /// A place.
     type Spot: Copy;
@@ -36,7 +37,7 @@ pub trait Pieces {
     fn corner(&self, second: bool, k: u32) -> Self::Spot;
     /// Where a side of the first cell crosses one of the second, and leaves it or enters it.
     fn place(&self, e: u32, f: u32, leaves: bool) -> Self::Spot;
-    /// A side of the part.
+    /// A side of the shared area.
     fn piece(&mut self, from: &Self::Spot, to: &Self::Spot);
 }
 
@@ -46,7 +47,7 @@ pub fn takes<C: Outline<D>, const D: usize>(p: &C, q: &C) -> bool {
     usual(p) && usual(q)
 }
 
-/// Gives the sides of what such cells share; the second one has moved.
+/// Gives the sides of the area that such cells share; the second cell has moved.
 pub fn meet<C: Outline<D>, S: Pieces, const D: usize>(p: &C, q: &C, sum: &mut S) -> Result<Met> {
     let (count, across) = (p.count(), q.count());
     // By side of a cell, the corners of the other one to its left.
@@ -126,12 +127,16 @@ fn add<S: Pieces>(
     match (from, to) {
         ((Some(from), true), (Some(to), true)) => sum.piece(&from, &to),
         ((None, _), (None, _)) => {}
-        _ => return Err(Error::Internal("a side goes in without coming out".into())),
+        _ => {
+            return Err(Error::Internal(
+                "a side enters a cell without leaving it".into(),
+            ));
+        }
     }
     Ok(())
 }
 
-/// As many bits.
+/// This many bits.
 fn all(count: usize) -> u32 {
     (1 << count) - 1
 }

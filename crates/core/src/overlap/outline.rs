@@ -37,7 +37,7 @@ pub enum Fault {
     Crossing = 4,
 }
 
-/// Takes the terms of a sum, or the sides of what cells share.
+/// Takes the terms of a sum, or the sides of the shared area.
 pub trait Sum: Pieces {
     /// A side of the first cell, which the terms that follow are about.
     fn side(&mut self, e: u32);

@@ -57,7 +57,7 @@ pub struct Work {
     /// The row and the column of each corner.
     at: Vec<(i64, usize)>,
     events: Vec<(u32, Event)>,
-    /// Where they are.
+    /// The positions of the events.
     spots: Vec<Long>,
     /// Meridians and rows where sides cross them.
     crossings: Vec<(u32, i64)>,
@@ -261,7 +261,7 @@ impl Walked<'_> {
         let count = block.columns() as u64;
         for (k, (_, event)) in work.events.iter().enumerate() {
             let [before, after] = self.cells(event);
-            // Where a side goes on after a meridian, the event that ends that piece tells of it.
+            // The piece that follows a meridian is found from the event at its end.
             let after = after.filter(|_| matches!(event, Event::Parallel { .. }));
             for (row, column) in before.into_iter().chain(after) {
                 if block.number(row, column) >= 0 {

@@ -14,7 +14,7 @@ use crate::base::error::{Error, Result};
 use crate::base::memory::{copied, filled, push, with_room};
 use crate::base::watch::{Pace, Watch};
 
-/// When fast steps, of which nobody knows that they end, give way to steps that end.
+/// When fast steps, which are not proven to terminate, give way to steps that terminate.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// Proposals before exact steps.
@@ -24,8 +24,8 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Far more than are needed: queries of random points take one to three proposals, and exact
-    /// pivots some tens.
+    /// Far more than are needed: queries of random points take one to three proposals, and a few
+    /// tens of exact pivots.
     pub const USUAL: Self = Self {
         proposals: 60,
         largest: 200,

@@ -183,7 +183,7 @@ fn lifted<const D: usize, const V: usize, const P: usize>(
 fn check_lifted<const D: usize, const V: usize, const P: usize>() -> [f64; 2] {
     let mut r = Random::new(5 + D as u64);
     let mut used = [0.0f64; 2];
-    // Fractions of many coordinates take long.
+    // Fractions are slow with many coordinates.
     for kind in 0..if D < 5 { 400 } else { 100 } {
         let Some(sites) = lifted::<D, V, P>(&mut r, kind) else {
             panic!("no sites");

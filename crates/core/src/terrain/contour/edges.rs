@@ -1,4 +1,4 @@
-//! The edges of each level or band, collected from all triangles, and numbered by themselves.
+//! The edges of each level or band, collected from all triangles; each has its own numbers of places.
 
 use super::link::Edge;
 use super::nodes::{Nodes, SHARE};

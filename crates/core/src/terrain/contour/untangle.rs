@@ -37,8 +37,8 @@ const WATCH_EVERY: usize = 1 << 12;
 /// the triangles in which this is not possible, ascending; unless `far`, places that are further
 /// apart than a few units in the last place are not united.
 ///
-/// Passes over the triangles in their order end with one in which nothing but equal positions is united.
-/// A triangle is skipped in a pass if it was valid when no place of it had moved since.
+/// Passes over the triangles in their order end with one in which only equal positions are united.
+/// A pass skips a triangle that was valid and none of whose places has moved since.
 pub fn untangle(
     nodes: &mut Nodes,
     far: bool,
