@@ -47,8 +47,8 @@ _INSTEAD = {
 # From this many coordinates on, `flat` and `max_bytes` are available.
 _MANY = 4
 _FLAT_ELSEWHERE = (
-    'flat="project" is only available from 4-D on: leave it out, and for 3-D points in one plane '
-    "take `error.plane` of the DegenerateInputError"
+    'flat="project" is only available from 4-D on: leave it out; for 3-D points in one plane, '
+    "use `error.plane` of the DegenerateInputError"
 )
 # Fewer points are never shared among threads.
 _FEW = 1000
@@ -159,7 +159,7 @@ class Delaunay(PointTriangulation):
     In a flat (``flat="project"``), the first k coordinates that determine the others decide
     orientation and location: `simplices` are positively oriented in these, and queries are
     projected to the flat along the other axes. `volumes` and `circumcenters` are those in the flat,
-    up to rounding, and `transform` does not exist.
+    up to rounding, and `transform` is not available.
 
     Names, dtypes and meanings are those of ``scipy.spatial.Delaunay``. All arrays are read-only,
     attributes cannot be set, and ``copy.copy`` and ``copy.deepcopy`` return the object itself.
@@ -317,7 +317,7 @@ def _triangles(
 ) -> tuple[dict[str, NDArray[Any]], Any]:
     """Return the arrays of the triangulation and the seconds of its stages.
 
-    If it `stays` in their flat, points may be in one.
+    With `stays`, points may lie in a flat, and the triangulation stays in it.
     """
     try:
         if points.shape[1] == 2:

@@ -188,7 +188,11 @@ def test_without_an_output_only_the_report(model, tmp_path, figures):
         (("none.nc", "1x1"), 3, "none.nc: No such file"),
         (("{text}", "1x1"), 3, "not a NetCDF file"),
         (("{model}", "{text}"), 3, "not a NetCDF file"),
-        (("{model}", "1x1", "-o", "a.tif"), 2, "this can only be written to .nc .nc4 .cdf .png"),
+        (
+            ("{model}", "1x1", "-o", "a.tif"),
+            2,
+            "the output can only be written to .nc .nc4 .cdf .png",
+        ),
         (("{model}", "1x1", "--save-weights", "a.png"), 2, "only be written to .nc .nc4 .cdf"),
         (("{model}", "1x1", "-o", "{model}"), 2, "would replace the input"),
         (("{model}", "1x1", "--coords", "lon"), 2, "a longitude and a latitude"),

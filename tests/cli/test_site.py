@@ -188,7 +188,7 @@ def test_a_volume_of_any_height_keeps_the_other_products(hill, command, tmp_path
     options = [*COMMON[:4], "--volume", "1e308", "--volume", "2", "--contours", "1"]
     code, _, err = command("terrain", hill, *options, "-o", tmp_path / "site")
     assert code == 0
-    assert "note: the page has a picture less: a plot cannot hold values beyond 1e+305" in err
+    assert "note: the page omits a plot: a plot cannot show values beyond 1e+305" in err
     assert (tmp_path / "site" / "contours.gpkg").exists()
     page = Page((tmp_path / "site" / "index.html").read_text(encoding="utf-8"))
     titles = [text for text in page.texts if text.startswith("Volume")]
@@ -200,7 +200,7 @@ def test_a_volume_of_any_height_keeps_the_other_products(hill, command, tmp_path
 def test_an_empty_height_is_named(hill, command, tmp_path, name):
     options = ["--volume", "", "-o", tmp_path / "site"] if name == "terrain" else [""]
     code, _, err = command(name, hill, *options, *COMMON[:4])
-    assert code and "an empty text: neither a file nor a height" in err
+    assert code and "an empty string: neither a file nor a height" in err
 
 
 HOSTILE = "<img src=x onerror=alert(1)>&\"'%41"

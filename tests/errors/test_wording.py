@@ -1,4 +1,4 @@
-"""Each error has its words once: a second place with the same text calls what has it."""
+"""Each error message is written once: other places call the function that has it."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 ROOT = Path(delone.__file__).parent
 # They check the package, and share no code with it.
 INDEPENDENT = ("reference", "testing")
-# Texts of Python itself, which a function of the module must raise.
+# Python's own messages, which a function of the module must raise.
 OF_PYTHON = {"module {} has no attribute {}"}
-# A text with fewer words, such as "{}, got {}", gets its words from where it is raised.
+# Messages with fewer words, such as "{}, got {}", are not compared.
 FEWEST = 3
 # What stands before "must be" is the name of an argument, and before a colon that of a file.
 NAMED = re.compile(r"^(?:rows of )?[\w{}./-]+(?= must )|^[\w{}.-]+(?=: )")

@@ -282,7 +282,7 @@ def test_errors_name_it_and_what_it_cannot_do() -> None:
     mesh = Delaunay(points, flat="project")
     with pytest.raises(AttributeError, match="transform is not available for points in a flat"):
         _ = mesh.transform
-    with pytest.raises(delone.InputError, match="points of the triangulation are in a flat"):
+    with pytest.raises(delone.InputError, match="points of the triangulation lie in a flat"):
         Linear(mesh, points[:, 0])
-    with pytest.raises(delone.InputError, match="points of the triangulation are in a flat"):
+    with pytest.raises(delone.InputError, match="points of the triangulation lie in a flat"):
         delone.AlphaComplex(mesh)

@@ -260,7 +260,7 @@ def test_refused_requests(tmp_path: Path) -> None:
         ({"columns": ["X", "Y"]}, "columns cannot be chosen"),
         ({"bounds": (200, 200, 300, 300)}, r"no points inside bounds=\(200"),
         ({"classes": [7]}, "no points of class 7"),
-        ({"attributes": ["red"]}, "has no dimension 'red'; its own are X, Y, Z, classification"),
+        ({"attributes": ["red"]}, "has no dimension 'red'; it has X, Y, Z, classification"),
         ({"layer": "a"}, "have no layers"),
     ):
         with pytest.raises(FileFormatError, match=message):

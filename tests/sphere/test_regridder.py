@@ -214,7 +214,7 @@ def test_weights_of_a_file(tmp_path: Path) -> None:
     made.weights.to_netcdf(path, source=made.source, target=made.target)
     read = Regridder(model(), TARGET, weights=sphere.Weights.from_netcdf(path))
     assert read(model()).identical(made(model()))
-    with pytest.raises(delone.InputError, match="target has 48 cells, and the weights 192"):
+    with pytest.raises(delone.InputError, match="target has 48 cells, but the weights are for 192"):
         Regridder(model(), "healpix:2", weights=made.weights)
     again = pickle.loads(pickle.dumps(made))
     assert again(model()).identical(made(model()))

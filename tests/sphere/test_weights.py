@@ -331,6 +331,6 @@ def test_what_files_refuse(tmp_path: Path) -> None:
         OVERLAPS.to_weights("majority").to_netcdf(path)
     with pytest.raises(delone.InputError, match="layout"):
         OVERLAPS.to_weights().to_netcdf(path, layout="cdo")
-    with pytest.raises(delone.InputError, match="source has 12 cells, and the weights 768"):
+    with pytest.raises(delone.InputError, match="source has 12 cells, but the weights are for 768"):
         OVERLAPS.to_weights().to_netcdf(path, source=Grid.from_healpix(1))
     assert not path.exists()

@@ -141,7 +141,7 @@ def test_quasi_newton_steps_with_densities_outlines_and_doubled_sites() -> None:
         ({"density": lambda p: p}, "shape"),
         ({"density": lambda p: -p[:, 0]}, "not negative"),
         ({"density": lambda p: 0 * p[:, 0]}, "returned only zeros"),
-        ({"density": lambda p: ["a"] * len(p)}, "what density returns must hold real numbers"),
+        ({"density": lambda p: ["a"] * len(p)}, "the result of density must hold real numbers"),
         ({"density": 5}, "density must be a function"),
         ({"progress": 5}, "progress must be a function"),
         ({"max_iter": None}, "max_iter must be an integer"),

@@ -351,7 +351,7 @@ def _as_integer(value: int, least: int, wanted: str) -> int:
 
 
 def wrong_shape(name: str, wanted: object, array: NDArray[Any]) -> ShapeError:
-    """Return the error for an array whose shape is not the one that is wanted."""
+    """Return the error for an array of the wrong shape."""
     return ShapeError(f"{name} must have shape {wanted}, got {array.shape}")
 
 
@@ -369,7 +369,7 @@ def as_text(text: Any, *, name: str) -> str:
 
 
 def as_index(n: int, low: int, high: int, *, name: str) -> int:
-    """Return an integer of a closed range as a Python integer; booleans are rejected."""
+    """Return an integer in a closed range as a Python integer; booleans are rejected."""
     wanted = f"{name} must be an integer from {low} to {high}"
     number = _as_integer(n, low, wanted)
     if number > high:

@@ -1,4 +1,4 @@
-"""What errors say about files: that they are missing, truncated, or without what is needed."""
+"""Errors about files that are missing, truncated, or lack required contents."""
 
 from __future__ import annotations
 
@@ -45,13 +45,13 @@ def existing(path: str | os.PathLike[str]) -> Path:
 
 
 def require_there(path: Path) -> None:
-    """Reject a name that does not exist."""
+    """Reject a path that does not exist."""
     if not path.exists():
         raise FileNotFoundError(f"{path}: no such file")
 
 
 def no_folder(path: object) -> str:
-    """Return what is said of a folder that is given in place of a file."""
+    """Return the message for a folder that is given in place of a file."""
     return f"{path} is a folder, not a file"
 
 
@@ -61,17 +61,17 @@ def not_regular(path: object) -> OSError:
 
 
 def not_a_path(path: object, name: str) -> DtypeError:
-    """Return the error for anything but the name of a file or folder."""
+    """Return the error for an argument that is not a path."""
     return DtypeError(f"{name} must be a string or a path-like object, got {path!r:.60}")
 
 
 def no_curves(path: Path) -> InputError:
-    """Return the error for a distance of chords from curves in a format without curves."""
+    """Return the error for `chord` in a format without curves."""
     return InputError(f"{path}: chord is for DXF files, which have curves")
 
 
 def no_layers(path: Path) -> FileFormatError:
-    """Return the error for a layer that is named in a format without layers."""
+    """Return the error for the name of a layer in a format without layers."""
     return FileFormatError(f"{path}: {path.suffix.lower()} files have no layers")
 
 
@@ -86,7 +86,7 @@ def cut_short(path: object, declared: object, contained: object) -> FileFormatEr
 
 
 def unread(path: object, kind: str, error: object) -> FileFormatError:
-    """Return the error for a file that a library cannot read as one of a kind, such as "NumPy"."""
+    """Return the error for a file that a library cannot read as a kind such as "NumPy"."""
     reason = str(error).partition("\n")[0] or type(error).__name__
     return FileFormatError(f"{path} is truncated or not a {kind} file: {reason:.200}")
 
@@ -99,7 +99,7 @@ def corrupt(path: object, what: object) -> FileFormatError:
 def loaded(
     content: bytes, path: object, look: Callable[[list[tuple[str, Any]]], Any] | None = None
 ) -> Any:
-    """Return what a JSON file contains; `look` makes objects of their members."""
+    """Return the contents of a JSON file; `look` converts the members of each object."""
     try:
         return json.loads(content, object_pairs_hook=look)
     except FileFormatError:
@@ -110,7 +110,7 @@ def loaded(
 
 @contextmanager
 def reading_as(path: object, kind: str) -> Iterator[None]:
-    """Convert whatever a library raises for a damaged file to the same error."""
+    """Convert what a library raises for a damaged file to FileFormatError."""
     try:
         yield
     except (DeloneError, FileNotFoundError, PermissionError, MemoryError):

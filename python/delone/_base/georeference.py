@@ -286,7 +286,7 @@ def warn_of_degrees(
     if planar is False and by is None and type(data) is np.ndarray:
         return  # hot path for small inputs
     if not isinstance(planar, bool | np.bool_):
-        raise DtypeError(f"planar must be True (a plane) or False, got {planar!r:.60}")
+        raise DtypeError(f"planar must be True (planar coordinates) or False, got {planar!r:.60}")
     if planar:
         return
     found = by or degrees_in(data)

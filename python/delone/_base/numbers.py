@@ -1,4 +1,4 @@
-"""Numbers as arguments: each kind of range is checked, and put into words, once."""
+"""Checks of numeric arguments: one function, with one message, for each kind of range."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ def as_nonnegative(value: Any, *, name: str, finite: bool = False) -> float:
 
 
 def as_share(value: Any, *, name: str, most: float = 1) -> float:
-    """Return a number above 0, of at most 1 or another limit."""
+    """Return a number above 0 and at most `most`."""
     number = as_number(value, name=name)
     return _checked(number, 0 < number <= most, f"above 0 and at most {most}", value, name)
 
 
 def as_between(value: Any, low: float, high: float, *, name: str) -> float:
-    """Return a number of a closed range."""
+    """Return a number in a closed range."""
     number = as_number(value, name=name)
     return _checked(number, low <= number <= high, f"from {low} to {high}", value, name)
 

@@ -1,6 +1,6 @@
-"""Arrays with one entry for each of several things: values, labels and marks.
+"""Conversion and checks of arrays with one entry per item: values, labels and marks.
 
-They are converted and checked here.
+Items are points, segments, triangles and the like.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def as_values(
 
 
 def as_labels(labels: ArrayLike | None, count: int, *, name: str) -> Indices:
-    """Return one 32-bit integer for each of `count` things, from (count,) or (count, 1).
+    """Return one 32-bit integer for each of `count` items, from (count,) or (count, 1).
 
     None means zeros.
     """
@@ -64,7 +64,7 @@ def as_labels(labels: ArrayLike | None, count: int, *, name: str) -> Indices:
 
 
 def as_marks(marks: ArrayLike, count: int, *, name: str, of: str) -> Bools:
-    """Return which of `count` things, such as "points", are given as a mask or as rows."""
+    """Return a mask of `count` items, such as "points", from a mask or rows."""
     array = as_plain_array(marks, name)
     if array.dtype.kind == "b":
         require_shape(array, (count,), name)
@@ -91,14 +91,14 @@ def require_shape(array: NDArray[Any], shape: tuple[int, ...], name: str) -> Non
 
 
 def require_real(array: NDArray[Any], name: str, *, kinds: str = "iuf") -> None:
-    """Reject arrays of anything but real numbers, or of other kinds."""
+    """Reject an array whose dtype is not one of `kinds`, by default those of real numbers."""
     if array.dtype.kind not in kinds:
         what = "numbers" if "c" in kinds else "real numbers"
         raise DtypeError(f"{name} must hold {what}, got dtype {array.dtype}")
 
 
 def require_mapping(given: Any, name: str) -> None:
-    """Reject anything but arrays by name."""
+    """Reject anything but a mapping of names to arrays."""
     if not hasattr(given, "items"):
         raise DtypeError(f"{name} must be a mapping of names to arrays, got {given!r:.60}")
 

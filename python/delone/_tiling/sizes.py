@@ -39,7 +39,7 @@ def formatted(position: Floats) -> str:
 def checked(sizes: Any, positions: Floats) -> Floats:
     """Return the lengths that a size function returned for positions, all above 0."""
     given = np.asarray(sizes)
-    require_real(given, "what size returns")
+    require_real(given, "the result of size")
     found = given.astype(np.float64)
     if found.ndim == 0:
         found = np.full(len(positions), float(found))

@@ -148,7 +148,8 @@ class Triangulation(Complex):
         """
         if self._is_flat:
             raise AttributeError(
-                "transform is not available for points in a flat: `locate` returns weights",
+                "transform is not available for points in a flat: `locate` returns barycentric "
+                "coordinates",
                 name="transform",
                 obj=self,
             )
@@ -160,7 +161,7 @@ class Triangulation(Complex):
         """Centers of the circles or spheres through the corners of simplices, (m, d).
 
         Each coordinate is within 4 units in the last place. Centers of thin simplices are far away,
-        and infinite beyond the range of doubles. In a flat they are in it, up to rounding.
+        and infinite beyond the range of doubles. In a flat, they lie in it, up to rounding.
         """
         if self._is_flat:
             return sealed(flats.circumcenters(self._points, self._simplices))
@@ -571,8 +572,8 @@ def require_whole(mesh: Triangulation | None, what: str) -> None:
     """Raise if the points of a triangulation are in a flat."""
     if mesh is not None and mesh._is_flat:
         raise InputError(
-            f"the points of the triangulation are in a flat, where {what} is not available: pass "
-            "the columns of its points that determine the others, for distances between these"
+            f"the points of the triangulation lie in a flat, where {what} is not available: pass "
+            "only the columns that determine the others; distances are then those in these columns"
         )
 
 

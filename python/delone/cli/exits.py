@@ -106,7 +106,7 @@ def protect_inputs(outputs: Iterable[Path], *inputs: Path) -> None:
 
 
 def require_suffix(path: Path, suffixes: Iterable[str], what: str) -> None:
-    """Reject a file whose name does not end with a suffix for what is written."""
+    """Reject a path whose suffix is not one of those for the output."""
     if path.suffix.lower() not in suffixes:
         raise Failure(f"{path}: {what} can only be written to {' '.join(suffixes)}", Exit.USAGE)
 

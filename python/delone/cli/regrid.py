@@ -215,7 +215,7 @@ def _options() -> Iterator[None]:
 
 
 def _require_suffix(path: Path, known: tuple[str, ...]) -> None:
-    require_suffix(path, known, "this")
+    require_suffix(path, known, "the output")
     if path.suffix.lower() in _IMAGES:
         require("matplotlib", extra="plot", what="drawing")
 

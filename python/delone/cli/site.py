@@ -403,7 +403,7 @@ def _drawn(draw: Callable[[Any], Any], *, wide: float, high: float | None = None
         draw(ax)
     except InputError as error:
         # The products are written, and the page has their numbers.
-        warnings.warn(f"the page has a picture less: {error}", stacklevel=2)
+        warnings.warn(f"the page omits a plot: {error}", stacklevel=2)
         return None
     ax.ticklabel_format(useOffset=False, style="plain")
     # Coordinates of maps are long, and maps may be narrow.

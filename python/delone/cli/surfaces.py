@@ -320,7 +320,7 @@ def height_of(text: str) -> float | None:
     try:
         return float(text)
     except ValueError:
-        shown = text or "an empty text"
+        shown = text or "an empty string"
         raise Failure(f"{shown}: neither a file nor a height", Exit.INPUT) from None
 
 

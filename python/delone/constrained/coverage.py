@@ -41,8 +41,8 @@ def first_polygons(
 ) -> tuple[Indices, Indices]:
     """Return the component of each triangle, and the first geometry that contains each component.
 
-    -1 for none. Rings contain what they wind around an odd number of times. `geometries` contains
-    the geometry of each row of segments, `sides` those of closed rings.
+    The geometry is -1 if there is none. Rings contain what they wind around an odd number of times.
+    `geometries` has the geometry of each row of segments; `sides` marks the rows of closed rings.
     """
     covers = made.source_start, made.source, np.where(sides, geometries, np.int32(-1))
     component, pairs = _core.components_in_polygons2(

@@ -55,7 +55,7 @@ def located(
     """
     points, simplices, neighbors, constrained = tiling
     if not len(seeds):
-        # Without a check of all triangles.
+        # This avoids a check of all triangles.
         return np.empty(0, dtype=np.int32), np.empty(0, dtype=bool)
     triangle = _core.find_simplex2(points, simplices, neighbors, seeds, workers)
     on_edge = on_edges(tiling, triangle, seeds)

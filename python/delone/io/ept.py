@@ -205,8 +205,7 @@ def _read_records(  # noqa: PLR0917
     unknown = [name for name in needed if name not in names]
     if unknown:
         raise FileFormatError(
-            f"{tree.path} has no dimension {unknown[0]!r:.80}; its own are "
-            f"{', '.join(sorted(names))}"
+            f"{tree.path} has no dimension {unknown[0]!r:.80}; it has {', '.join(sorted(names))}"
         )
     x, y, z = (_scaled(file, records[axis], axis, tree.scaling[axis]) for axis in "XYZ")
     keep: Bools = np.ones(len(records), dtype=bool)
@@ -227,12 +226,14 @@ def _values(tree: _Tree, file: Path, records: NDArray[Any], name: str) -> NDArra
 
 
 def _scaled(file: Path, values: NDArray[Any], name: str, scaling: tuple[float, float]) -> Floats:
-    """Return numbers by a scale and an offset; finite ones stay finite, or are rejected."""
+    """Return scaled numbers; finite ones that would become infinite are rejected."""
     if values.dtype.kind in "iu" and values.dtype.itemsize == 8:
         # What is rounded up to the end of the range cannot be converted back.
         lowest, highest = (int(end) for end in (values.min(initial=0), values.max(initial=0)))
         if max(-lowest, highest) > _LARGEST:
-            raise FileFormatError(f"{file} has {name} beyond 2**53, which doubles would round")
+            raise FileFormatError(
+                f"{file} has values of {name} beyond 2**53, which doubles would round"
+            )
     scale, offset = scaling
     with np.errstate(over="ignore", invalid="ignore"):
         found: Floats = values.astype(np.float64) * scale + offset

@@ -48,7 +48,7 @@ def require_bounds(low: Floats, high: Floats) -> None:
     near = (high / 2 - low / 2).max()
     if far > _DRAWABLE[1] or near < _DRAWABLE[0]:
         raise InputError(
-            "a plot cannot hold coordinates beyond 1e305 or an extent below 1e-305; "
+            "a plot cannot show coordinates beyond 1e305 or an extent below 1e-305; "
             "multiply all coordinates by a power of two first, which changes no triangle or cell"
         )
 
@@ -57,7 +57,7 @@ def require_values(values: Floats) -> None:
     """Reject values whose range overflows in the color scales of matplotlib; NaN is ignored."""
     if np.nanmax(np.abs(values), initial=0) > _DRAWABLE[1]:
         raise InputError(
-            f"a plot cannot hold values beyond {_DRAWABLE[1]:g}: divide all values by a power of "
+            f"a plot cannot show values beyond {_DRAWABLE[1]:g}: divide all values by a power of "
             "two first"
         )
 

@@ -68,7 +68,7 @@ def plot_raster(
     MissingExtraError
         matplotlib is not installed.
     InputError
-        No value is finite, or one is beyond 1e305.
+        No value is finite, or the magnitude of one is above 1e305.
 
     Examples
     --------

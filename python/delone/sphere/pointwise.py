@@ -50,7 +50,7 @@ class _Pair(NamedTuple):
 def refuse_neighbors(neighbors: int | None, method: str) -> None:
     """Reject a number of neighbors for a method that takes none."""
     if neighbors is not None and method != "inverse_distance":
-        raise InputError(f"neighbors is for inverse_distance, got {method!r:.60}")
+        raise InputError(f"neighbors is only for method 'inverse_distance', got {method!r:.60}")
 
 
 def pointwise(

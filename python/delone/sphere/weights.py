@@ -333,11 +333,11 @@ class Weights(AreaWeights):
         return SlopedWeights._of(*parts)
 
     def _require_fit(self, grids: tuple[Grid | None, Grid | None]) -> None:
-        """Reject a source and a target, if given, with other numbers of cells."""
+        """Reject a source or target whose number of cells is not that of the weights."""
         counts = len(self.source_fractions), len(self.fractions)
         for name, grid, count in zip(("source", "target"), grids, counts, strict=True):
             if grid is not None and grid.ncells != count:
-                raise InputError(f"{name} has {grid.ncells} cells, and the weights {count}")
+                raise InputError(f"{name} has {grid.ncells} cells, but the weights are for {count}")
 
 
 class SlopedWeights(Weights):

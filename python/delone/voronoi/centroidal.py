@@ -384,7 +384,7 @@ def _state(diagram: Voronoi, density: Density | None) -> _State:
 
 def _density(density: Density, places: Floats) -> Floats:
     given = np.asarray(density(places))
-    require_real(given, "what density returns", kinds="biuf")
+    require_real(given, "the result of density", kinds="biuf")
     values = given.astype(np.float64)
     if values.shape != (len(places),):
         raise InputError(f"density returned shape {values.shape} for {len(places)} places")

@@ -26,7 +26,7 @@ class Kind(NamedTuple):
     texts: tuple[str, ...] = ("crs",)
 
     def fits(self, arrays: Mapping[str, NDArray[Any]]) -> bool:
-        """Tell whether all arrays are there, and the first, the points, has the same columns."""
+        """Return whether all arrays are present and the points have the columns of this layout."""
         if not self.layout.keys() <= arrays.keys():
             return False
         name, (_, columns) = next(iter(self.layout.items()))

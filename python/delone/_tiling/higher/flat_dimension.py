@@ -1,4 +1,4 @@
-"""The tables of functions for simplices in flats of four to eight dimensions, and their index."""
+"""Functions for simplices in flats of points with four to eight coordinates, and their locator."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ __all__ = ["FLATS"]
 
 # By the dimension of the flat.
 _DIMENSIONS = {2: PLANE, 3: SPACE} | HIGHER
-# Squared distances up to this factor and this number larger than the smallest are compared exactly.
+# Squared distances are compared exactly up to this factor times the smallest, plus this number.
 _CLOSE, _LEAST = 1 + 2.0**-40, 2.0**-1000
 
 
 class FlatLocator:
-    """The index for point location in a flat: points are projected to it along the other axes."""
+    """The locator in a flat: points are projected to it along the other axes."""
 
     def __init__(self, points: Floats, simplices: Indices, neighbors: Indices) -> None:
         self._points, self._rows = points, np.unique(simplices)

@@ -41,7 +41,7 @@ class Flat:
         self.axes = _pivots([[x - y for x, y in zip(row, rows[0], strict=True)] for row in rows])
         others = [k for k in range(points.shape[1]) if k not in self.axes]
         self.projected = np.ascontiguousarray(points[:, self.axes])
-        # The other coordinates, as the core takes them.
+        # The other coordinates, as the core expects them.
         self.rest = np.zeros((len(points), _MOST))
         self.rest[:, : len(others)] = points[:, others]
 
@@ -68,7 +68,7 @@ def flat_of(points: Floats, error: DegenerateInputError) -> Flat:
 def advised(error: DegenerateInputError) -> DegenerateInputError:
     """Return an error that also says how points in a flat can be triangulated."""
     if len(error.chain) > _LEAST:
-        error.args = (f'{error}, or pass flat="project" to stay in the flat',)
+        error.args = (f'{error}, or pass flat="project" to Delaunay or ConvexHull',)
     return error
 
 

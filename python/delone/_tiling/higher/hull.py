@@ -26,7 +26,7 @@ __all__ = ["areas", "hull_arrays", "normals", "orientations", "sizes"]
 def hull_arrays(points: Floats, *, stays: bool = False) -> dict[str, NDArray[Any]]:
     """Return the arrays of a hull; `polygons` lists the vertices of each facet, ascending.
 
-    If it `stays` in their flat, points may be in one.
+    With `stays`, points may lie in a flat, and the hull stays in it.
     """
     try:
         found: Any = _core.hull_n(points)
