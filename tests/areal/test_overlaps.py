@@ -238,3 +238,10 @@ def test_files_and_pickles(tmp_path: Path) -> None:
     assert np.nansum(weights.apply([9.0])) == pytest.approx(9.0)
     with pytest.raises(delone.FileFormatError):
         delone.sphere.Overlaps.load(tmp_path / "shared.npz")
+
+
+@pytest.mark.parametrize("methods", [None, [], 3, "sum"])
+def test_methods_that_are_not_a_mapping(methods: Any) -> None:
+    square = [[(0, 0), (1, 0), (1, 1), (0, 1)]]
+    with pytest.raises(delone.DtypeError, match="methods must map columns to methods"):
+        Overlaps(square, square).transfer({"a": [1]}, methods)

@@ -13,7 +13,7 @@ import pytest
 
 import delone
 from delone import _core, sphere
-from delone.errors import InputError
+from delone.errors import DtypeError, InputError
 from delone.sphere import Grid, Overlaps
 from tiers import seeds
 
@@ -306,6 +306,12 @@ def test_full_turns_whose_last_meridian_is_rounded(step: float, shift: float) ->
     for source in (plain, shifted):
         assert Overlaps(source, cells).covered_target == pytest.approx(1, rel=1e-9)
     assert shifted.areas.sum() == pytest.approx(4 * np.pi, rel=1e-13)
+
+
+@pytest.mark.parametrize("diagram", [None, 3, delone.Voronoi([(0, 0), (1, 0), (0, 1)])])
+def test_cells_of_other_things_than_diagrams(diagram: Any) -> None:
+    with pytest.raises(DtypeError, match=r"delone\.sphere\.Voronoi"):
+        Grid.from_voronoi(diagram)
 
 
 def test_more_than_a_turn_is_refused() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -14,11 +15,9 @@ from delone._tiling.complex import Stored
 from delone.areal.cells import as_cells
 from delone.areal.shared import OverlapReport, SharedAreas
 from delone.areal.weights import AreaWeights
-from delone.errors import InputError, ShapeError
+from delone.errors import DtypeError, InputError, ShapeError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import NDArray
 
     from delone._base.types import Rows
@@ -194,6 +193,8 @@ class Overlaps(SharedAreas[AreaWeights], Stored):
             A column does not exist, a method is unknown, or a text column's is not "majority".
         ShapeError
             A column does not have one value for each source cell.
+        DtypeError
+            `methods` is not a mapping.
 
         See Also
         --------
@@ -209,6 +210,8 @@ class Overlaps(SharedAreas[AreaWeights], Stored):
         >>> found["people"].tolist(), found["use"].tolist()
         ([30.0, 30.0], ['field', 'town'])
         """
+        if not isinstance(methods, Mapping):
+            raise DtypeError(f"methods must map columns to methods, got {type(methods).__name__}")
         found: dict[str, NDArray[Any]] = {}
         made: dict[str, AreaWeights] = {}
         for column, method in methods.items():

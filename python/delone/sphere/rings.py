@@ -10,7 +10,7 @@ from delone import _core
 from delone._base.arrays import as_points, as_workers, require_finite, wrong_shape
 from delone._base.extras import require
 from delone._base.georeference import crs_of, is_geographic
-from delone.errors import InputError, ShapeError
+from delone.errors import DtypeError, InputError, ShapeError
 from delone.sphere.coordinates import directions_of, units_of
 from delone.sphere.flat import flat_polygon
 
@@ -290,6 +290,8 @@ def geometries(given: Any, *, degrees: bool, workers: int | None) -> Rings:
 
 def voronoi(diagram: Voronoi) -> tuple[Floats, Rows]:
     """Return the corners of the cells of a diagram, and where those of each site start."""
+    if not hasattr(diagram, "_region"):
+        raise DtypeError(f"diagram must be a delone.sphere.Voronoi, got {type(diagram).__name__}")
     if diagram._region is not None:
         raise InputError("the diagram is clipped: use Grid.from_polygons(diagram.to_geopandas())")
     if diagram.triangulation is None:
