@@ -317,6 +317,15 @@ def test_any_number_of_workers_draws_the_same(step):
             assert np.array_equal(one, another)
 
 
+def test_contours_of_many_points_do_not_depend_on_the_order_of_rows():
+    """Levels are heights of vertices in all parts of the arrays."""
+    rng = np.random.default_rng(6)
+    xyz = np.column_stack((rng.random((40_000, 2)), rng.integers(0, 6, 40_000)))
+    one, other = (TIN.from_points(rows).contours(range(6)) for rows in (xyz, xyz[::-1]))
+    assert np.array_equal(one.points, other.points)
+    assert np.array_equal(one.starts, other.starts)
+
+
 @pytest.mark.parametrize("rounds", [1, 2, 3, 5])
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.sampled(6)

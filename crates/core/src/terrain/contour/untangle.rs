@@ -393,10 +393,21 @@ mod tests {
 
     #[test]
     fn triangles_that_are_skipped_would_not_change() {
-        let levels: Vec<f64> = (0..40).map(|k| 0.13 + 0.27 * f64::from(k)).collect();
         let (mut unions, mut impossible) = (0, 0);
-        for power in [-23, -22, -21, -20, -19] {
-            let sheet = Sheet::new(12, 2.0_f64.powi(power));
+        // The last sheet has more triangles than a share.
+        for (side, power) in [
+            (12, -23),
+            (12, -22),
+            (12, -21),
+            (12, -20),
+            (12, -19),
+            (100, -21),
+        ] {
+            let count = if side > 12 { 4 } else { 40 };
+            let levels: Vec<f64> = (0..count)
+                .map(|k| 0.13 + 10.8 / f64::from(count) * f64::from(k))
+                .collect();
+            let sheet = Sheet::new(side, 2.0_f64.powi(power));
             let some: Vec<bool> = (0..sheet.simplices.len()).map(|t| t % 5 == 0).collect();
             for (far, collapsed) in [(false, &[][..]), (true, &[]), (false, &some), (true, &some)] {
                 let (mut a, mut b) = (
