@@ -233,7 +233,7 @@ def test_other_values_and_wrong_arguments(tmp_path: Path) -> None:
         tiles.simplify(max_error=100, values="depth")
     with pytest.raises(InputError, match="has no 'slope'"):
         tiles.simplify(max_error=100, values="slope")
-    with pytest.raises(InputError, match="from 0 on, got -1"):
+    with pytest.raises(InputError, match="at least 0 and finite, got -1"):
         tiles.simplify(max_error=-1)
     with pytest.raises(InputError, match="executor must be"):
         tiles.simplify(max_error=1, executor="threads")

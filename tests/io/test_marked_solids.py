@@ -436,7 +436,7 @@ def test_markers_of_objects(tmp_path):
         assert keyed(mesh.input_faces, mesh.face_markers) == WALLS
         assert (tetrahedralize(given, face_markers=MARKERS * 0).face_markers == 0).all()
     surface.cell_data["marker"] = MARKERS + 0.5
-    with pytest.raises(delone.DtypeError, match="face_markers must be integers"):
+    with pytest.raises(delone.DtypeError, match="face_markers must hold integers"):
         tetrahedralize(surface)
 
 

@@ -352,7 +352,7 @@ def test_convex_polyhedra_clip() -> None:
         ([(1, 0, 0, 1), (-1, 0, 0, 1), (0, 1, 0, 1), (0, 0, 1, 1)], "no point"),
         ([(0, 0, 0, 1), (1, 0, 0, 1)], "not a half-space"),
         ([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], "span no volume"),
-        (((0, 0, 0), (1, float("nan"), 1)), "finite"),
+        (((0, 0, 0), (1, float("nan"), 1)), "NaN or infinity"),
         ([(0, 0), (1, 1)], "clip must be"),
     ],
 )

@@ -15,7 +15,7 @@ from delone._base.extras import require
 from delone._base.numbers import as_positive
 from delone._base.values import require_real
 from delone.areal.paired import row_sums
-from delone.errors import InputError
+from delone.errors import InputError, ShapeError
 from delone.plot.axes import new_axes, thin
 from delone.sphere.coordinates import lonlat_of
 from delone.sphere.large import overlaps_of
@@ -109,7 +109,8 @@ def _box(grid: Any, bounds: Sequence[float] | None) -> tuple[float, float, float
         left, bottom, right, top = given if len(given) == 4 else (np.nan,) * 4
         right += 360.0 if right < left else 0.0
         if not (left < right <= left + 360 and -90 <= bottom < top <= 90):
-            raise InputError(f"bounds must be left, bottom, right and top, got {bounds!r:.60}")
+            kind = InputError if len(given) == 4 else ShapeError
+            raise kind(f"bounds must be left, bottom, right and top, got {bounds!r:.60}")
         return left, bottom, right, top
     vectors = grid.rings[0]
     places = lonlat_of(vectors) if len(vectors) else np.zeros((0, 2))
