@@ -68,7 +68,10 @@ fn power(
     height: BigRational,
 ) -> Option<BigRational> {
     let rows = a.iter().zip(heights);
-    let x = solved(rows.map(|(r, h)| [&r[..], &[h.clone()]].concat()).collect())?;
+    let x = solved(
+        rows.map(|(r, h)| [&r[..], std::slice::from_ref(h)].concat())
+            .collect(),
+    )?;
     Some(height - x.iter().zip(d).map(|(x, d)| x * d).sum::<BigRational>())
 }
 
