@@ -88,16 +88,15 @@ impl Ranked<'_> {
         self.given.simplices[t].map(|v| self.ranks[v as usize])
     }
 
-    /// The number of nodes on each edge of a triangle that belongs to it; 0 on the others.
-    fn own(&self, t: usize) -> [u32; 3] {
-        let ranks = self.corners(t);
-        if ranks[0] == ranks[1] && ranks[1] == ranks[2] {
-            return [0; 3];
+    /// The number of nodes on the edge opposite corner `k` if it belongs to the triangle, otherwise 0.
+    fn own(&self, t: usize, k: usize) -> u32 {
+        let [a, b] = self.ends(t, k).map(|v| self.ranks[v as usize]);
+        // Most edges have no nodes, and need no look at the triangle beyond.
+        if a == b || self.twin(t, k).is_some_and(|(u, _)| u < t) {
+            0
+        } else {
+            a.abs_diff(b)
         }
-        std::array::from_fn(|k| match self.twin(t, k) {
-            Some((u, _)) if u < t => 0,
-            _ => ranks[(k + 1) % 3].abs_diff(ranks[(k + 2) % 3]),
-        })
     }
 }
 
@@ -237,7 +236,10 @@ impl<'a> Nodes<'a> {
             corners,
             ranks: corners.map(|k| ranks[k]),
             even: (corners[0] + 1) % 3 == corners[1],
-            nodes: [0, 1, 2].map(|k| self.first(t, k)),
+            nodes: [0, 1, 2].map(|k| {
+                let crosses = ranks[(k + 1) % 3] != ranks[(k + 2) % 3];
+                if crosses { self.first(t, k) } else { 0 }
+            }),
         })
     }
 
@@ -247,8 +249,7 @@ impl<'a> Nodes<'a> {
             Some((u, j)) if u < t => (u, j),
             _ => (t, k),
         };
-        let own = if k == 0 { [0; 3] } else { self.edges.own(t) };
-        self.first[t] + own[..k].iter().sum::<u32>()
+        self.first[t] + (0..k).map(|j| self.edges.own(t, j)).sum::<u32>()
     }
 
     /// The node of a level on the edge opposite corner `k`.
@@ -262,8 +263,8 @@ impl<'a> Nodes<'a> {
         // The last triangle whose nodes do not begin after this one: those without nodes have none left.
         let t = self.first.partition_point(|&first| first <= node) - 1;
         let mut left = node - self.first[t];
-        let own = self.edges.own(t);
-        let k = own.iter().position(|&count| {
+        let k = (0..3).find(|&k| {
+            let count = self.edges.own(t, k);
             let found = left < count;
             left -= if found { 0 } else { count };
             found
@@ -313,7 +314,7 @@ fn number(
         for (t, first) in (share * SHARE..).zip(first) {
             // Numbers beyond the limit of u32 are never used: the count is refused.
             *first = count as u32;
-            count += edges.own(t).map(|own| own as usize).iter().sum::<usize>();
+            count += (0..3).map(|k| edges.own(t, k) as usize).sum::<usize>();
         }
         Ok(count)
     })?;
@@ -343,15 +344,17 @@ impl Task<'_> {
         let mut node = 0;
         for (t, first) in (self.from..).zip(self.first) {
             *first += self.start;
-            let own = edges.own(t);
-            for k in (0..3).filter(|&k| own[k] > 0) {
+            for (k, own) in (0..3).map(|k| (k, edges.own(t, k) as usize)) {
+                if own == 0 {
+                    continue;
+                }
                 let twin = edges.twin(t, k);
                 let collapses = is_collapsed(t) || twin.is_some_and(|(u, _)| is_collapsed(u));
                 let [low, high] = edges.rising(t, k);
                 let [a, b] = [low, high].map(|v| v as usize);
                 let [p, q] = [a, b].map(|v| edges.given.points[v]);
                 let from = edges.ranks[a] as usize;
-                for &level in &levels[from..from + own[k] as usize] {
+                for &level in &levels[from..from + own] {
                     let (parent, place) = if level == heights[b] {
                         (high, q)
                     } else if collapses {
