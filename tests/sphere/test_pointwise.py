@@ -224,7 +224,11 @@ def test_what_is_refused() -> None:
         ({"method": "cubic"}, delone.InputError, "method"),
         ({"extrapolate": "linear"}, delone.InputError, "extrapolate"),
         ({"method": "inverse_distance", "neighbors": 0}, delone.InputError, "at least 1"),
-        ({"method": "linear", "neighbors": 4}, delone.InputError, "is for inverse_distance"),
+        (
+            {"method": "linear", "neighbors": 4},
+            delone.InputError,
+            "only for method .inverse_distance",
+        ),
         ({"source_mask": [1]}, delone.ShapeError, "source_mask"),
         ({"workers": 0}, delone.InputError, "workers"),
     ):
