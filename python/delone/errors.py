@@ -427,7 +427,7 @@ class CrowdedFacesError(InputError):
 
 
 class DanglingFacesError(InputError):
-    """Faces end inside a solid, and the mesh cannot be made to contain them.
+    """Beside faces that end inside a solid, there is no double for a point that they need.
 
     Parameters
     ----------

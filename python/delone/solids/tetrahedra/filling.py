@@ -17,7 +17,7 @@ from delone._base.arrays import (
     as_workers,
 )
 from delone._base.counting import counted, listed
-from delone._tiling.space.locking import Sides, directions
+from delone._tiling.space.locking import Sides, cells, directions
 from delone.errors import (
     BudgetExceededError,
     CrowdedFacesError,
@@ -32,6 +32,7 @@ from delone.solids.tetmesh.refinement import as_bounds, refined
 from delone.solids.tetmesh.tetmesh import TetMesh
 from delone.solids.tetrahedra import arguments, seeds
 from delone.solids.tetrahedra.covering import counts_of, of_imprint, parts_of, reported
+from delone.solids.tetrahedra.curtains import Curtains, free_faces
 from delone.solids.tetrahedra.inside import RULES, inner_cells
 from delone.solids.tetrahedra.recutting import recut, uncut
 from delone.solids.tetrahedra.seeds import Tiling
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone._base.types import Bools, Floats, Indices
-    from delone._core import RecoveryCounts
+    from delone._core import RecoveredFaces, RecoveryCounts
     from delone.solids.surface import ImprintedSurface, SurfaceCheck
     from delone.solids.tetmesh.refinement import Bounds
     from delone.solids.tetrahedra.arguments import Task
@@ -153,8 +154,8 @@ def tetrahedralize(
         Between some faces there is no double where a point is needed; the error contains these
         faces.
     DanglingFacesError
-        Faces with an edge that belongs to no other face cannot be in the mesh without points on
-        them; the error contains these faces.
+        Beside faces that end inside a region, no double is left for a point that they need; the
+        error contains these faces.
     BudgetExceededError
         More than `max_points` points are needed for the faces or, by an estimate, for the sizes.
     InputError
@@ -183,6 +184,9 @@ def tetrahedralize(
     follow those of the input in `points`, `face_source` names its faces, and
     ``report.imprinted[mesh.face_source]`` is the input face of each. Volumes enclosed by two bodies
     are separate regions.
+
+    Faces may end inside a region, such as cracks. If the edges of no other face need points, each
+    face with such an edge gets an added point close to it.
 
     With ``boundary="surface"``, the edge between two triangles is flipped if the triangles are
     exactly coplanar and have the same orientation and marker, until each flat part has its
@@ -350,28 +354,59 @@ class _Stages(NamedTuple):
 
     def _recovered(self, parts: Parts, extra: Floats) -> _Everything:
         """Return all tetrahedra that the faces enclose, in rows of the result."""
-        points, limit = self.task.points, self.task.limit
+        points, count = self.task.points, len(parts.faces)
         used = np.unique(parts.faces)
         faces = np.searchsorted(used, parts.faces).astype(np.int32)
         places = np.concatenate((points[used], extra))
-        workers = as_workers(self.task.workers)
+        curtains = None
         try:
-            made = _core.recover_faces(places, faces, limit, True, workers)
+            made = self._by_core(places, faces, self.task.limit)
         except ShapeError as error:
-            alone = _alone(parts)
-            if not len(alone):
-                raise
-            raise _dangling(alone) from error
-        except BudgetExceededError as error:
-            error.args = (f"{error}{self._advice()}", *error.args[1:])
-            raise
+            curtains = self._curtains(places, parts, faces, error)
+            places = np.concatenate((places, curtains.apexes))
+            everything = np.concatenate((faces, curtains.faces))
+            made = self._by_core(places, everything, self.task.limit - len(curtains.apexes))
         if len(made.crowded):
-            raise _crowded(parts.source[made.crowded], self._advice())
+            crowded = made.crowded if curtains is None else curtains.given(made.crowded, count)
+            raise _crowded(parts.source[crowded], self._advice())
         further = made.points[len(used) :]
         rows = np.concatenate((used, len(points) + np.arange(len(further)))).astype(np.int32)
         everywhere = np.concatenate((points, further))
-        tiling = Tiling(everywhere, rows[made.tetrahedra], made.neighbors, parts.faces)
-        return _Everything(tiling, made.walls, made.cells, made.nadded, made.counts)
+        simplices, neighbors, walls = made.tetrahedra, made.neighbors, made.walls
+        cell, nadded = made.cells, made.nadded
+        if curtains is not None:
+            simplices, neighbors, walls = curtains.removed(made, count)
+            cell = cells(neighbors, walls >= 0)
+            nadded += len(curtains.apexes)
+        tiling = Tiling(everywhere, rows[simplices], neighbors, parts.faces)
+        return _Everything(tiling, walls, cell, nadded, made.counts)
+
+    def _by_core(self, points: Floats, faces: Indices, limit: int) -> RecoveredFaces:
+        try:
+            return _core.recover_faces(points, faces, limit, True, as_workers(self.task.workers))
+        except BudgetExceededError as error:
+            error.args = (f"{error}{self._advice()}", *error.args[1:])
+            raise
+
+    def _curtains(
+        self, places: Floats, parts: Parts, faces: Indices, error: ShapeError
+    ) -> Curtains:
+        """Return temporary faces at free edges, since points cannot be moved off these."""
+        free = free_faces(faces)
+        if not len(free):
+            raise error
+        limit = self.task.limit
+        if len(free) > limit:
+            raise BudgetExceededError(
+                f"{counted(len(free), 'point')} would be added at faces that end inside, more than "
+                f"max_points={limit:,}",
+                limit=limit,
+                found=len(free),
+            )
+        curtains = Curtains.on(places, faces, free, self.task.workers)
+        if curtains is None:
+            raise _dangling(np.unique(parts.source[free])) from error
+        return curtains
 
     def _advice(self) -> str:
         """Suggest the option that adds fewer points, unless it was chosen."""
@@ -502,19 +537,11 @@ def _crowded(faces: Indices, advice: str) -> CrowdedFacesError:
     )
 
 
-def _alone(parts: Parts) -> Indices:
-    """Return the faces with an edge of no other face."""
-    edges = np.sort(parts.faces[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), axis=1)
-    _, of, count = np.unique(edges, axis=0, return_inverse=True, return_counts=True)
-    alone = (count[of.reshape(-1)] == 1).reshape(-1, 3).any(axis=1)
-    rows: Indices = np.unique(parts.source[alone])
-    return rows
-
-
 def _dangling(rows: Indices) -> DanglingFacesError:
     """Return the error that names these faces."""
     return DanglingFacesError(
-        f"{counted(len(rows), 'face')} with an edge of no other face cannot be kept: "
-        f"{listed(rows, 10)}; extend them to other faces, or remove points and faces near them",
+        f"beside {counted(len(rows), 'face')} with an edge of no other face, no double is left for "
+        f"a point that is needed there: {listed(rows, 10)}; extend them to other faces, or remove "
+        "points and faces near them",
         faces=rows,
     )
