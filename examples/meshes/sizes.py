@@ -1,9 +1,9 @@
 """
-Mesh sizes by a function: fine near a hole
-==========================================
+Mesh sizes by distance: fine near a hole and a slit
+===================================================
 
-A plate with a round hole and a slit is meshed with small triangles at the hole and large ones far away. Sizes can be a
-function of position, a raster or a field of another mesh. A histogram of the angles shows the quality.
+A plate with a round hole and a slit is meshed with small triangles at both and large ones far away. Sizes can also be any
+other function of position, a raster or a field of another mesh. A histogram of the angles shows the quality.
 
 Install: ``pip install "delone[plot]"``.
 """
@@ -25,11 +25,10 @@ plate = {
 slit = {"type": "LineString", "coordinates": [(4.2, 0.8), (5.0, 2.2)]}
 
 
-def size(points):
-    """Return the edge length: 0.04 at the hole, growing by a quarter of the distance from it."""
-    distance = np.hypot(points[:, 0] - 2, points[:, 1] - 1.5) - 0.5
-    return 0.04 + 0.25 * np.maximum(distance, 0)
-
+# The edge length is 0.04 at the hole and the slit, and grows by a quarter of the distance from them.
+ring = {"type": "LineString", "coordinates": [*hole.tolist(), hole[0].tolist()]}
+size = delone.SizeByDistance([ring, slit], near=0.04, growth=0.25)
+print(size)
 
 uniform = delone.mesh([plate, slit], size=0.04)
 graded = delone.mesh([plate, slit], size=size)
@@ -75,7 +74,11 @@ figure, axes = plt.subplot_mosaic(
     height_ratios=[1.5, 1],
     layout="constrained",
 )
-smooth.plot(axes["mesh"], vertices=False, title=f"{smooth.nsimplex:,} triangles, finer at the hole")
+smooth.plot(
+    axes["mesh"],
+    vertices=False,
+    title=f"{smooth.nsimplex:,} triangles, finer at the hole and the slit",
+)
 graded.plot_quality(axes["before"]).set(title="Angles, refined")
 smooth.plot_quality(axes["after"]).set(title="Angles, smoothed")
 plt.show()

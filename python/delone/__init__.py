@@ -91,6 +91,7 @@ if TYPE_CHECKING:
     from delone.flips import LawsonResult, lawson
     from delone.hull import ConvexHull
     from delone.periodic import PeriodicDelaunay
+    from delone.refine.distances import SizeByDistance
     from delone.refine.meshed import Mesh
     from delone.refine.refine import mesh
     from delone.refine.report import MeshReport
@@ -164,6 +165,7 @@ __all__ = [
     "RegularTriangulation",
     "SegmentReport",
     "ShapeError",
+    "SizeByDistance",
     "SurfaceCheck",
     "TetMesh",
     "TetMeshReport",
@@ -255,6 +257,7 @@ _HOMES = {
     "RefinementReport": "solids.tetmesh.refinement",
     "RegularTriangulation": "regular",
     "SegmentReport": "constrained.segments",
+    "SizeByDistance": "refine.distances",
     "SurfaceCheck": "solids.surface.report",
     "TetMesh": "solids.tetmesh.tetmesh",
     "TetMeshReport": "solids.tetmesh.validation",

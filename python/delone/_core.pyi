@@ -26,6 +26,7 @@ __all__ = [
     "DeepestPoints",
     "Diagram2",
     "Diagram3",
+    "Distances3",
     "FacePairs",
     "Faults",
     "FlippedTriangulation",
@@ -664,6 +665,15 @@ class Diagram3:
         """All arrays, in the order of the arguments of the constructor."""
     def __getnewargs__(self) -> tuple[NDArray[np.generic], ...]:
         """The arguments for unpickling."""
+
+@final
+class Distances3:
+    """Triangles in 3-D, in a tree: distances from the nearest one."""
+
+    def __new__(cls, points: NDArray[np.float64], triangles: NDArray[np.int32]) -> Distances3:
+        """Of triangles, (m, 3); with repeated vertices they are segments and points."""
+    def of(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.float64]:
+        """The distance of each query from the nearest triangle, rounded."""
 
 @final
 class FacePairs:

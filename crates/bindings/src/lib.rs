@@ -99,7 +99,7 @@ mod _core {
     #[pymodule_export]
     use super::locate::{Location2, Locator2, find_simplex2};
     #[pymodule_export]
-    use super::locate3::{Location3, Locator3};
+    use super::locate3::{Distances3, Location3, Locator3};
     #[pymodule_export]
     use super::measure::{
         around, below2, circumcenters, dihedral_angles3, edges, face_areas3, face_normals3, faces3,

@@ -1,14 +1,17 @@
 //! Point location on arrays of tetrahedra.
 
+use delone_core::base::memory::with_room;
 use delone_core::interpolate::space::natural;
-use delone_core::locate::space::{coordinates, find, nearest, within};
+use delone_core::locate::space::{Distances, coordinates, find, nearest, within};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, column, shaped};
+use crate::arrays::{Column, Table, column, in_range, rows, shaped};
 use crate::errors::Outcome;
+use crate::given::answered;
 use crate::interpolate::{NaturalWeights, Points};
 use crate::locator::Space;
+use crate::signals::watched;
 
 /// Locations of queries in tetrahedra.
 #[pyclass(frozen, get_all, module = "delone._core")]
@@ -84,5 +87,39 @@ impl Locator3 {
     /// The nearest vertex to each query, in a Delaunay triangulation.
     fn nearest(&self, xi: Points<'_>, workers: usize) -> Outcome<Column<i32>> {
         self.0.column(&xi, workers, nearest)
+    }
+}
+
+/// Triangles in 3-D, in a tree: distances from the nearest one.
+#[pyclass(frozen, module = "delone._core")]
+pub struct Distances3(Distances);
+
+#[pymethods]
+impl Distances3 {
+    /// Of triangles, (m, 3); with repeated vertices they are segments and points.
+    #[new]
+    fn new(
+        points: PyReadonlyArray2<'_, f64>,
+        triangles: PyReadonlyArray2<'_, i32>,
+    ) -> Outcome<Self> {
+        let py = points.py();
+        let points = rows::<f64, 3>(&points, "points")?;
+        let triangles = rows::<i32, 3>(&triangles, "triangles")?;
+        in_range(triangles, 0, points.len(), "triangles")?;
+        let corners = watched(py, |watch| {
+            let mut corners = with_room(triangles.len())?;
+            corners.extend(triangles.iter().map(|t| t.map(|v| points[v as usize])));
+            Distances::over(corners, watch)
+        })?;
+        Ok(Self(corners))
+    }
+
+    /// The distance of each query from the nearest triangle, rounded.
+    fn of(&self, py: Python<'_>, xi: Points<'_>, workers: usize) -> Outcome<Column<f64>> {
+        let queries = rows::<f64, 3>(&xi, "xi")?;
+        let found = answered(py, queries.len(), |watch| {
+            self.0.of(queries, workers, watch)
+        })?;
+        Ok(column(py, found))
     }
 }

@@ -32,6 +32,7 @@ __all__ = [
     "LINE",
     "POINTS",
     "Parts",
+    "is_geometry",
     "is_shapely",
     "parts_of",
     "require_finite_parts",
@@ -180,6 +181,12 @@ def is_shapely(given: Any) -> bool:
     """Return whether an object is a shapely geometry, without importing shapely."""
     shapely = sys.modules.get("shapely")
     return shapely is not None and isinstance(given, shapely.Geometry)
+
+
+def is_geometry(given: Any) -> bool:
+    """Return whether an object is one geometry or a table of geometries, not coordinates."""
+    names = "geom_type", "__geo_interface__"
+    return isinstance(given, dict) or any(hasattr(given, name) for name in names)
 
 
 def _of_iterable(given: Iterable[Any], name: str) -> Iterator[Any]:

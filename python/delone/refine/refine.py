@@ -273,7 +273,7 @@ def _base(
     planar: bool,
 ) -> tuple[ConstrainedDelaunay, Indices]:
     """Return a constrained triangulation of the domain, and the region of each triangle."""
-    pair = isinstance(domain, tuple) and len(domain) == 2 and not _is_geometry(domain[0])
+    pair = isinstance(domain, tuple) and len(domain) == 2 and not geodata.is_geometry(domain[0])
     if not pair and (holes is not None or regions is not None):
         raise InputError("holes and regions are only supported with (points, segments)")
     if isinstance(domain, ConstrainedDelaunay):
@@ -317,12 +317,6 @@ def _refuse_points(domain: Any) -> None:
                 "(points, segments), or a ring of at least three points in 2-D; "
                 "for the convex hull, pass delone.ConstrainedDelaunay(points, [])"
             )
-
-
-def _is_geometry(thing: Any) -> bool:
-    return isinstance(thing, dict) or any(
-        hasattr(thing, name) for name in ("geom_type", "__geo_interface__")
-    )
 
 
 def _why_empty(base: ConstrainedDelaunay) -> str:

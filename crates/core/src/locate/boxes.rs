@@ -167,7 +167,7 @@ pub fn length<const D: usize>(v: [f64; D]) -> f64 {
 
 /// A lower bound of the distance to the box, roundings allowed for.
 #[inline]
-fn bound_from<const D: usize>(extent: &Extent<D>, q: [f64; D], unit: f64) -> f64 {
+pub fn bound_from<const D: usize>(extent: &Extent<D>, q: [f64; D], unit: f64) -> f64 {
     let gaps: [f64; D] = std::array::from_fn(|k| {
         let (min, max, x) = (extent.min[k] * unit, extent.max[k] * unit, q[k] * unit);
         (min - x).max(x - max).max(0.0)

@@ -7,6 +7,7 @@ mod barycentric;
 mod boundary;
 mod coordinates;
 mod dimension;
+mod distance;
 mod excess;
 mod face;
 mod foot;
@@ -16,6 +17,7 @@ mod walk;
 pub use barycentric::barycentric;
 pub use coordinates::{Coordinates, Within, coordinates, within};
 pub use dimension::Space;
+pub use distance::Distances;
 pub use nearest::nearest;
 
 pub use crate::base::arrays::{OUTWARD as FACES, Tetrahedra};
