@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from delone.errors import DeloneError, DtypeError, FileFormatError, InputError
 
 if TYPE_CHECKING:
-    import os
     from collections.abc import Callable, Iterator
 
 __all__ = [
@@ -23,6 +23,7 @@ __all__ = [
     "no_layers",
     "not_a_path",
     "not_regular",
+    "path_of",
     "reading_as",
     "require_there",
     "unread",
@@ -32,7 +33,7 @@ __all__ = [
 
 def existing(path: str | os.PathLike[str]) -> Path:
     """Return the path of a file that exists and is not empty."""
-    file = Path(path)
+    file = path_of(path)
     require_there(file)
     if file.is_dir():
         raise FileFormatError(no_folder(file))
@@ -42,6 +43,13 @@ def existing(path: str | os.PathLike[str]) -> Path:
     if file.stat().st_size == 0:
         raise FileFormatError(f"{file} is empty")
     return file
+
+
+def path_of(path: str | os.PathLike[str], *, name: str = "path") -> Path:
+    """Return a path; anything else raises an error."""
+    if not isinstance(path, str | os.PathLike):
+        raise not_a_path(path, name)
+    return Path(path)
 
 
 def require_there(path: Path) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
+from delone._base.arrays import as_plain_array
 from delone._base.counting import agreed, counted
 from delone._base.georeference import as_crs, common_crs, is_geographic, transformed
 from delone.constrained.geodata import EXTERIOR, INTERIOR, parts_of, require_finite_parts
@@ -93,7 +94,7 @@ def _of_polygons(given: Any, name: str) -> tuple[Floats, Rows, Rows, Bools]:
                 f"{name}: {counted(count, 'cell')} of the diagram {agreed(count, 'is', 'are')} "
                 f"unbounded, first cell {open_cells[0]}: make the diagram with clip="
             )
-    if isinstance(given, str | bytes | int | float):
+    if given is None or isinstance(given, str | bytes | int | float):
         raise DtypeError(
             f"{name} must be polygons, a triangulation or a Voronoi diagram, got "
             f"{type(given).__name__}"
@@ -102,9 +103,11 @@ def _of_polygons(given: Any, name: str) -> tuple[Floats, Rows, Rows, Bools]:
     if isinstance(given, np.ndarray) and given.ndim == 3:
         given = list(given)
     if isinstance(given, list | tuple) and all(
-        isinstance(item, np.ndarray | list | tuple) and np.ndim(item[:1]) == 2 for item in given
+        isinstance(item, np.ndarray | list | tuple) and as_plain_array(item[:1], name).ndim == 2
+        for item in given
     ):
-        given = [{"type": "Polygon", "coordinates": [np.asarray(item)]} for item in given]
+        rings = [as_plain_array(item, name) for item in given]
+        given = [{"type": "Polygon", "coordinates": [ring]} for ring in rings]
     parts = parts_of(given, name=name)
     require_finite_parts(parts)
     kinds = parts.kinds

@@ -34,6 +34,7 @@ __all__ = [
     "Parts",
     "is_geometry",
     "is_shapely",
+    "no_geometry",
     "parts_of",
     "require_finite_parts",
     "rings_of_numbers",
@@ -131,7 +132,7 @@ def _batches(given: Any, name: str) -> Iterator[Any]:
     elif isinstance(given, str | bytes | os.PathLike):
         raise InputError(_string_error(given, name))
     elif not hasattr(given, "__iter__"):
-        raise _no_geometry(given, name)
+        raise no_geometry(given, name)
     else:
         refuse_masks(given, name)
         rings = rings_of_numbers(given, name)
@@ -290,7 +291,8 @@ def _of_runs(runs: Iterable[tuple[Floats, int]]) -> Parts:
     return _closed(np.concatenate(rows), part, np.array(kinds, dtype=np.int64), none)
 
 
-def _no_geometry(given: object, name: str) -> InputError:
+def no_geometry(given: object, name: str) -> InputError:
+    """Return the error for something that is not a geometry."""
     return InputError(f"{name}: {given!r:.80} is not a geometry")
 
 
@@ -304,7 +306,7 @@ def _of_mapping(mapping: Mapping[str, Any], name: str) -> Iterator[tuple[Floats,
         return
     coordinates: Any = mapping.get("coordinates")
     if coordinates is None or not isinstance(kind, str):
-        raise _no_geometry(dict(mapping), name)
+        raise no_geometry(dict(mapping), name)
     if kind in ("Point", "MultiPoint"):
         for point in [coordinates] if kind == "Point" else coordinates:
             yield _run([point], kind), POINTS

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from delone._base.arrays import as_choice
+from delone._base.arrays import as_choice, as_plain_array
 from delone._base.values import as_values
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.delaunay import Delaunay
@@ -79,7 +79,7 @@ def as_explorable(mesh: Any) -> Explorable:
             f"a {type(mesh).__name__} cannot be explored: pass a 2-D {_CLASSES}, or points of "
             "shape (n, 2)"
         )
-    shape = np.shape(mesh)
+    shape = as_plain_array(mesh, "points").shape
     if len(shape) == 2 and shape[1] == 3:
         raise ShapeError(
             f"points of shape {shape} are 3-D, and only 2-D points can be explored: pass two "

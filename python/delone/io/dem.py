@@ -10,7 +10,6 @@ from __future__ import annotations
 import os
 import warnings
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -18,7 +17,7 @@ import numpy as np
 from delone._base.arrays import as_least, as_number
 from delone._base.counting import counted
 from delone._base.extras import require
-from delone._base.files import reading_as, require_there
+from delone._base.files import path_of, reading_as, require_there
 from delone._base.georeference import caller_level
 from delone.errors import FileFormatError, InputError
 from delone.io.companions import require_companion
@@ -30,6 +29,7 @@ from delone.io.systems import check_system
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+    from pathlib import Path
 
     from delone._base.types import Floats
 
@@ -144,7 +144,7 @@ def read_raster(
     >>> survey.points[0].tolist(), survey.z.tolist()
     ([12.0, 26.0], [5.0, 6.0, 7.0, 8.0])
     """
-    file = Path(path)
+    file = path_of(path)
     step = as_least(step, 1, name="step")
     most = as_least(max_points, 1, name="max_points")
     box, empty_value = as_bounds(bounds), as_nodata(nodata)

@@ -8,7 +8,6 @@ highest y, as `delone.interpolate.grid` returns it. Formats with another order a
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -16,6 +15,7 @@ import numpy as np
 from delone._base.atomic import replacing
 from delone._base.decimals import outer, spacing
 from delone._base.extras import require
+from delone._base.files import path_of
 from delone._base.georeference import as_crs
 from delone.errors import FileFormatError, InputError
 from delone.io.geotiff import write_geotiff
@@ -25,6 +25,7 @@ from delone.io.referencing import cf_attributes, warn_if_left_out
 if TYPE_CHECKING:
     import os
     from collections.abc import Callable
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -147,7 +148,7 @@ def write_raster(
 
 def raster_writer(path: str | os.PathLike[str]) -> Callable[..., None]:
     """Return the function that writes this suffix in place, after importing its library."""
-    file = Path(path)
+    file = path_of(path)
     if file.suffix.lower() not in _WRITERS:
         raise FileFormatError(
             f"{file}: cannot write rasters with this suffix; known are {' '.join(_WRITERS)}"

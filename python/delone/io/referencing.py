@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import warnings
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from delone._base.extras import require
+from delone._base.files import path_of
 from delone._base.georeference import CRSWarning
 from delone.errors import FileFormatError
 
@@ -22,7 +22,7 @@ def left_out(path: str | os.PathLike[str], crs: str | None, known: Sequence[str]
 
     `known` contains the suffixes of formats that can store one.
     """
-    suffix = Path(path).suffix.lower()
+    suffix = path_of(path).suffix.lower()
     if crs is None or suffix in known:
         return None
     return (

@@ -6,16 +6,16 @@ Modules are named here and imported on use, so an unused format costs nothing.
 from __future__ import annotations
 
 import importlib
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from delone._base.files import existing
+from delone._base.files import existing, path_of
 from delone.errors import FileFormatError
 from delone.io.compressed import SUFFIXES
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
+    from pathlib import Path
 
 __all__ = [
     "FACETS",
@@ -99,7 +99,7 @@ def mesh_suffixes() -> tuple[str, ...]:
 
 def is_text(path: str | os.PathLike[str]) -> bool:
     """Return whether the suffix is that of a text file of points, which `line_numbers` can read."""
-    suffixes = [suffix.lower() for suffix in Path(path).suffixes]
+    suffixes = [suffix.lower() for suffix in path_of(path).suffixes]
     if suffixes and suffixes[-1] in SUFFIXES:
         suffixes.pop()
     return bool(suffixes) and READERS.get(suffixes[-1]) == "text"
@@ -119,17 +119,17 @@ def holds_geometries(path: str | os.PathLike[str]) -> bool:
 
 def holds_surface(path: str | os.PathLike[str]) -> bool:
     """Return whether `read_surface` reads files with this suffix."""
-    return READERS.get(Path(path).suffix.lower()) in SHEETS
+    return READERS.get(path_of(path).suffix.lower()) in SHEETS
 
 
 def is_point_tiles(path: str | os.PathLike[str]) -> bool:
     """Return whether the name is that of the file which describes Entwine Point Tiles."""
-    return Path(path).name == _POINT_TILES
+    return path_of(path).name == _POINT_TILES
 
 
 def is_lidar(path: str | os.PathLike[str]) -> bool:
     """Return whether a file has points with classes: LAS, LAZ or Entwine Point Tiles."""
-    return READERS.get(Path(path).suffix.lower()) == "las" or is_point_tiles(path)
+    return READERS.get(path_of(path).suffix.lower()) == "las" or is_point_tiles(path)
 
 
 def suffix_of(file: Path) -> str:

@@ -8,13 +8,12 @@ coordinates. A .poly file without points takes them from the .node file next to 
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone._base.arrays import as_points, as_simplices
-from delone._base.files import without
+from delone._base.files import path_of, without
 from delone.errors import FileFormatError, InputError
 from delone.exchange.parts import boundary
 from delone.exchange.second import of_order
@@ -37,6 +36,7 @@ from delone.io.pointset import PointSet
 if TYPE_CHECKING:
     import os
     from collections.abc import Sequence
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -81,7 +81,7 @@ def read_triangle(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
     ...     read_triangle(file)["vertices"].tolist()
     [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]]
     """
-    file = Path(path)
+    file = path_of(path)
     suffix = file.suffix.lower()
     if suffix not in (".node", ".ele", ".poly"):
         raise FileFormatError(f"{file} is not a .node, .ele or .poly file")

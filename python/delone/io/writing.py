@@ -6,13 +6,13 @@ Modules are named here and imported on use, so an unused format costs nothing.
 from __future__ import annotations
 
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone._base.arrays import as_choice, as_flag, as_plain_array
 from delone._base.atomic import replacing
+from delone._base.files import path_of
 from delone._base.georeference import as_crs, crs_of
 from delone._base.values import require_mapping
 from delone.errors import DtypeError, FileFormatError, InputError
@@ -24,6 +24,7 @@ from delone.io.registry import LANDXML, MESHES, TETGEN, TRIANGLE, module_of
 if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Mapping
+    from pathlib import Path
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -188,7 +189,7 @@ def write_mesh(
     ...     len(read_points(Path(folder) / "mesh.npz"))
     5
     """
-    suffix, kind = Path(path).suffix.lower(), _kind(triangulation)
+    suffix, kind = path_of(path).suffix.lower(), _kind(triangulation)
     lines = as_flag(edges, name="edges")
     if lines and not hasattr(triangulation, "edges"):
         name = type(triangulation).__name__
@@ -232,7 +233,7 @@ def _kind(triangulation: Any) -> str:
 
 def _require_place(path: str | os.PathLike[str], mesh: Any, kind: str, *, edges: bool) -> None:
     """Reject what the format cannot store."""
-    name, suffix = type(mesh).__name__, Path(path).suffix.lower()
+    name, suffix = type(mesh).__name__, path_of(path).suffix.lower()
     if suffix == ".npz" and not hasattr(mesh, "save"):
         raise FileFormatError(f"{path}: .npz files cannot store a {name}; use .vtu")
     if kind == "separate" and edges:
@@ -283,14 +284,14 @@ def writer(
     `surface`, triangles in 3-D; with ``order=2``, second-order elements, except to images.
     """
     write = _writer(path, "surface" if surface else "tetrahedra" if space else "triangles")
-    suffix = Path(path).suffix.lower()
+    suffix = path_of(path).suffix.lower()
     if as_order(order) == 1 or suffix in _LABELS:
         return write
     return partial(write, order=_second_order(suffix, edges=False))
 
 
 def _writer(path: str | os.PathLike[str], kind: str) -> Callable[..., None]:
-    file = Path(path)
+    file = path_of(path)
     suffix = file.suffix.lower()
     holders, what = _HOLDERS[kind]
     if suffix in _WRITERS and suffix not in holders:

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from delone._base.arrays import as_simplices
+from delone._base.files import path_of
 from delone.errors import FileFormatError, InputError
 from delone.sphere.coordinates import units_of
 
 if TYPE_CHECKING:
     import os
+    from pathlib import Path
 
     from delone._base.types import Bools, Floats, Rows
     from delone.sphere.grid_report import GridReport
@@ -22,8 +23,9 @@ __all__ = ["median_dual", "read_text"]
 
 def read_text(folder: str | os.PathLike[str]) -> tuple[Floats, Rows]:
     """Return longitudes and latitudes in degrees, and triangles, of nod2d.out and elem2d.out."""
-    nodes = _table(Path(folder) / "nod2d.out", 4)
-    triangles = _table(Path(folder) / "elem2d.out", 3)
+    place = path_of(folder, name="folder")
+    nodes = _table(place / "nod2d.out", 4)
+    triangles = _table(place / "elem2d.out", 3)
     order = nodes[:, 0] - 1
     if not np.array_equal(np.sort(order), np.arange(len(nodes))):
         raise FileFormatError(f"nod2d.out: nodes must have the numbers 1 to {len(nodes)}")

@@ -40,9 +40,10 @@ def _counts(half: int, points: Any) -> list[int]:
     """Return the cells in each row."""
     if points is None:
         return [4 * half] * (2 * half)
-    if isinstance(points, str):
-        if points != "octahedral":
-            raise InputError(f'points must be "octahedral" or numbers, got {points!r:.60}')
+    octahedral = isinstance(points, str) and points == "octahedral"
+    if not octahedral and (isinstance(points, str) or not hasattr(points, "__iter__")):
+        raise InputError(f'points must be "octahedral" or numbers, got {points!r:.60}')
+    if octahedral:
         north = [20 + 4 * k for k in range(half)]
         return north + north[::-1]
     counts = [as_least(count, 1, name="points") for count in points]

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_points, as_workers, require_finite, wrong_shape
+from delone._base.arrays import (
+    as_plain_array,
+    as_points,
+    as_workers,
+    require_finite,
+    wrong_shape,
+)
 from delone._base.extras import require
 from delone._base.georeference import crs_of, is_geographic
+from delone.constrained.geodata import no_geometry
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.sphere.coordinates import directions_of, units_of
 from delone.sphere.flat import flat_polygon
@@ -54,7 +62,7 @@ class Rings(NamedTuple):
 
 def as_bounds(values: ArrayLike, *, name: str, degrees: bool) -> Floats:
     """Return the bounds of columns or rows as edges between them, in degrees."""
-    array = np.asarray(values)
+    array = as_plain_array(values, name)
     flat = as_points(array.reshape(-1, 1), name=name, ndim=1)[:, 0]
     require_finite(flat.reshape(-1, 1), name=name)
     if array.ndim == 2 and array.shape[1] == 2:
@@ -148,7 +156,7 @@ def as_corners(
     lon: ArrayLike, lat: ArrayLike, *, degrees: bool, workers: int | None
 ) -> tuple[Floats, Rows, tuple[int, ...]]:
     """Return vectors of arrays of corners, (m, 3), the corners of cells, (n, k), and the shape."""
-    x, y = np.asarray(lon), np.asarray(lat)
+    x, y = as_plain_array(lon, "lon"), as_plain_array(lat, "lat")
     if x.shape != y.shape or x.ndim not in {2, 3} or 0 in x.shape:
         raise ShapeError(
             "lon and lat must both have shape (rows + 1, columns + 1) or (rows, columns, k), got "
@@ -176,19 +184,20 @@ def as_starts(
 ) -> tuple[Floats, Rows]:
     """Return corners, (k, 3), and where the corners of each cell start."""
     given = xyz if xyz is not None else lonlat
-    shape = np.shape(given) if given is not None else ()
-    if given is not None and len(shape) == 3:
-        if starts is not None:
-            raise ShapeError("starts are not needed for corners of shape (n, c, columns)")
-        starts = np.arange(shape[0] + 1, dtype=np.int64) * shape[1]
-        given = np.asarray(given).reshape(-1, shape[2])
+    if given is not None:
+        array = as_plain_array(given, "lonlat" if xyz is None else "xyz")
+        if array.ndim == 3:
+            if starts is not None:
+                raise ShapeError("starts are not needed for corners of shape (n, c, columns)")
+            starts = np.arange(array.shape[0] + 1, dtype=np.int64) * array.shape[1]
+            given = array.reshape(-1, array.shape[2])
     if xyz is not None:
         vectors = directions_of(lonlat, given, degrees=degrees, workers=workers)
     else:
         vectors = directions_of(given, None, degrees=degrees, workers=workers, any_turns=True)
     if starts is None:
         raise ShapeError("give starts, or corners of shape (n, c, columns)")
-    where = np.asarray(starts)
+    where = as_plain_array(starts, "starts")
     if where.ndim != 1 or where.dtype.kind not in "iu" or not len(where):
         raise ShapeError(f"starts must be integers of shape (n + 1,), got {where.shape}")
     where = where.astype(np.int64)
@@ -261,7 +270,11 @@ def geometries(given: Any, *, degrees: bool, workers: int | None) -> Rings:
     table = getattr(given, "geometry", given)
     if isinstance(table, shapely.Geometry):
         table = [table]
+    if isinstance(table, str | bytes | Mapping) or not hasattr(table, "__iter__"):
+        raise no_geometry(table, "polygons")
     items = np.array([item for item in table], dtype=object)  # noqa: C416
+    for item in items[~shapely.is_valid_input(items)]:
+        raise no_geometry(item, "polygons")
     polygon = {3, 6}
     kinds = shapely.get_type_id(items)
     wrong = [k for k, kind in enumerate(kinds.tolist()) if kind not in polygon and kind != -1]

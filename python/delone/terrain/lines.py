@@ -15,7 +15,7 @@ import numpy as np
 from delone._base.arrays import as_plain_array, as_points, require_finite, wrong_shape
 from delone._base.extras import require
 from delone._base.georeference import transformed
-from delone.constrained.geodata import is_shapely
+from delone.constrained.geodata import is_shapely, no_geometry
 from delone.errors import InputError
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ def _features(given: Any) -> list[Any]:
     if not isinstance(given, dict) and not is_shapely(given):
         given = getattr(given, "__geo_interface__", given)
     if isinstance(given, dict):
-        several = given.get("type") == "FeatureCollection"
+        several = given.get("type") == "FeatureCollection" and "features" in given
         return list(given["features"]) if several else [given]
     if is_shapely(given) or _is_line(given):
         return [given]
@@ -140,7 +140,7 @@ def _require_areas(feature: Any, name: str) -> None:
         geometry = mapping.get("geometry") if mapping.get("type") == "Feature" else mapping
         if not geometry:
             return
-        feature = require("shapely.geometry", extra="geo", what="GeoJSON").shape(geometry)
+        feature = _shape(geometry, name)
     if not is_shapely(feature) or feature.is_empty:
         return
     for part in getattr(feature, "geoms", [feature]):
@@ -198,13 +198,23 @@ def _of_set(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
 def _of_mapping(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
     """Yield the lines of GeoJSON, and of objects with a GeoJSON-like interface."""
     mapping = given if isinstance(given, dict) else given.__geo_interface__
-    if mapping.get("type") == "FeatureCollection":
-        yield from _each(mapping["features"], name, number)
-    elif mapping.get("type") == "Feature":
-        yield from _each(mapping["geometry"], name, number)
+    part = {"FeatureCollection": "features", "Feature": "geometry"}.get(str(mapping.get("type")))
+    if part is None:
+        yield from _of_geometry(_shape(mapping, name), name, number)
+    elif part in mapping:
+        yield from _each(mapping[part], name, number)
     else:
-        shape = require("shapely.geometry", extra="geo", what="GeoJSON").shape
-        yield from _of_geometry(shape(mapping), name, number)
+        raise no_geometry(mapping, name)
+
+
+def _shape(mapping: Any, name: str) -> Any:
+    """Return the shapely geometry of a GeoJSON geometry."""
+    shape = require("shapely.geometry", extra="geo", what="GeoJSON").shape
+    try:
+        return shape(mapping)
+    # What shapely raises depends on the fault; most often it lacks a key.
+    except Exception as error:
+        raise no_geometry(mapping, name) from error
 
 
 def _is_line(given: Any) -> bool:

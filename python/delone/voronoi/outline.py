@@ -131,6 +131,7 @@ def _of_rings(clip: Any) -> Any:
             return _together([_geometry(each) for each in clip])
         return None
     shapely = shapely_or_say()
+    _require_finite(np.concatenate(rings))
     if len(rings) == 1:
         return shapely.Polygon(rings[0])
     lines = shapely.MultiLineString([np.vstack((ring, ring[:1])) for ring in rings])
@@ -251,13 +252,18 @@ def of_wkb(data: bytes) -> Any:
         raise InputError(f"the outline is not well-known binary: {error}") from error
 
 
+def _require_finite(coordinates: Floats) -> None:
+    """Reject an outline with NaN or infinity."""
+    if not np.isfinite(coordinates).all():
+        raise InputError("the outline of clip has a coordinate that is NaN or infinite")
+
+
 def _outline(geometry: Any, fix: bool) -> Clip:
     shapely = shapely_or_say()
     if shapely.get_type_id(geometry) not in (_POLYGON, _MULTIPOLYGON):
         raise InputError(f"clip must be a polygon or a multipolygon, got a {geometry.geom_type}")
     geometry = shapely.force_2d(geometry)
-    if not np.isfinite(shapely.get_coordinates(geometry)).all():
-        raise InputError("the outline of clip has a coordinate that is NaN or infinite")
+    _require_finite(shapely.get_coordinates(geometry))
     unit = unit_of(shapely.get_coordinates(geometry))
     in_units = times(geometry, unit)
     if not shapely.is_valid(in_units):
