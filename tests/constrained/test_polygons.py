@@ -458,7 +458,7 @@ class TestWhatIsNoGeometry:
             raise NotImplementedError("Nonlinear geometry types are not currently supported")
 
         # Not every shapely can hold a curve; those that can say this.
-        monkeypatch.setattr(shapely, "get_rings", refused)
+        monkeypatch.setattr(shapely, "get_coordinates", refused)
         with pytest.raises(errors.InputError, match="curves are not supported"):
             take(shapely.Polygon(RING))
 

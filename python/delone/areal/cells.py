@@ -138,8 +138,10 @@ def _require_range(points: Floats, name: str) -> None:
     """Reject coordinates whose areas are beyond the range of doubles."""
     if not len(points):
         return
-    top = float(np.abs(points).max())
-    extent = float((points.max(axis=0) / 2 - points.min(axis=0) / 2).max())
+    # By columns, which takes a fraction of the time.
+    low, high = (np.array([find(column) for column in points.T]) for find in (np.min, np.max))
+    top = float(np.maximum(-low, high).max())
+    extent = float((high / 2 - low / 2).max())
     if top > _LARGEST or (0 < extent < _SMALLEST):
         raise InputError(
             f"{name}: coordinates up to {top:.6g} and an extent of {extent * 2:.6g} have areas "

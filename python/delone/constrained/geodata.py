@@ -43,7 +43,9 @@ __all__ = [
 
 POINTS, LINE, EXTERIOR, INTERIOR = range(4)
 # Shapely's type numbers.
-_POINT, _POLYGON, _COLLECTION = 0, 3, 7
+_POLYGON, _COLLECTION = 3, 7
+# By type: points, lines, rings that do not belong to a polygon, outer rings; last, no geometry.
+_KIND_OF = np.array([POINTS, LINE, LINE, EXTERIOR, LINE])
 
 
 class Parts(NamedTuple):
@@ -85,8 +87,9 @@ def parts_of(geometries: Any, *, name: str = "geometries") -> Parts:
 
 def require_finite_parts(parts: Parts) -> None:
     """Reject NaN and infinity, and name the geometries that have them."""
-    wrong = ~np.isfinite(parts.coordinates).all(axis=1)
-    if wrong.any():
+    finite = np.isfinite(parts.coordinates)
+    if not finite.all():
+        wrong = ~finite.all(axis=1)
         part = np.searchsorted(parts.starts, np.flatnonzero(wrong), side="right") - 1
         bad = np.unique(parts.geometries[part])
         first = ", ".join(map(str, bad[:10].tolist()))
@@ -235,17 +238,19 @@ def _split(geometries: NDArray[Any]) -> Parts:
     while (shapely.get_type_id(geometries) > _POLYGON).any():
         geometries, index = shapely.get_parts(geometries, return_index=True)
         rows = rows[index]
-    rings, index = shapely.get_rings(geometries, return_index=True)
-    plain = shapely.get_type_id(geometries) != _POLYGON
-    # The rings of a polygon take its place in the order.
-    items = np.concatenate((geometries[plain], rings))
-    at = np.concatenate((np.flatnonzero(plain), index))
-    # A ring that does not belong to a polygon is a closed line.
-    plain_kinds = np.where(shapely.get_type_id(geometries[plain]) == _POINT, POINTS, LINE)
-    kinds = np.concatenate((plain_kinds, _ring_kinds(index)))
-    order = np.argsort(at, kind="stable")
-    coordinates, part = shapely.get_coordinates(items[order], return_index=True)
-    return _closed(coordinates, part, kinds[order], rows[at[order]])
+    kinds = _KIND_OF[shapely.get_type_id(geometries)]
+    # Making rings takes longer than reading coordinates.
+    several = shapely.get_num_interior_rings(geometries) > 0
+    if several.any():
+        rings, index = shapely.get_rings(geometries[several], return_index=True)
+        # The rings of a polygon take its place in the order.
+        items = np.concatenate((geometries[~several], rings))
+        at = np.concatenate((np.flatnonzero(~several), np.flatnonzero(several)[index]))
+        kinds = np.concatenate((kinds[~several], _ring_kinds(index)))
+        order = np.argsort(at, kind="stable")
+        geometries, kinds, rows = items[order], kinds[order], rows[at[order]]
+    coordinates, part = shapely.get_coordinates(geometries, return_index=True)
+    return _closed(coordinates, part, kinds, rows)
 
 
 def _ring_kinds(polygon: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -265,7 +270,8 @@ def _closed(
     starts = np.concatenate(([0], np.cumsum(counts)))
     ring = np.flatnonzero((kinds >= EXTERIOR) & (counts > 1))
     first, last = starts[ring], starts[ring + 1] - 1
-    repeats = (coordinates[first] == coordinates[last]).all(axis=1)
+    x, y = (coordinates[first] == coordinates[last]).T
+    repeats = x & y
     stays = np.ones(len(coordinates), dtype=bool)
     stays[last[repeats]] = False
     counts[ring[repeats]] -= 1
