@@ -193,3 +193,50 @@ def test_what_is_refused_and_warned_of() -> None:
     torn = shapely.MultiPolygon([one, shapely.affinity.translate(one, 45, -130)])
     with pytest.raises(delone.InputError, match=r"cell 0: outer rings .* run in both directions"):
         Grid.from_polygons([torn], winding="ccw")
+
+
+CAP = [(0, 50), (270, 50), (180, 50), (90, 50)]
+SQUARE = [(0, 0), (10, 0), (10, 10), (0, 10)]
+
+
+def test_a_clockwise_cell_that_may_be_the_rest_of_the_sphere_is_told() -> None:
+    with pytest.warns(PolygonWarning, match=r"^1 large cell is clockwise, first cell 0, whose "):
+        grid = Grid.from_mesh(lonlat=[CAP])
+    assert grid.areas[0] < np.pi
+    with pytest.warns(PolygonWarning, match="first cell 1, whose smaller side has"):
+        Grid.from_mesh(lonlat=[SQUARE, CAP])
+    shapely = pytest.importorskip("shapely")
+    with pytest.warns(PolygonWarning, match="first cell 1, whose smaller side has"):
+        Grid.from_polygons([shapely.box(0, 0, 10, 10), shapely.Polygon(CAP)])
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    "cells",
+    [
+        [CAP, [(0, -50), (90, -50), (180, -50), (270, -50)]],
+        [CAP[::-1]],
+        [SQUARE[::-1]],
+        [SQUARE, SQUARE[::-1]],
+        [CAP[::-1], SQUARE[::-1]],
+    ],
+    ids=["all clockwise", "counterclockwise", "small", "small among others", "large among others"],
+)
+def test_other_clockwise_cells_are_only_counted(cells: Any) -> None:
+    Grid.from_mesh(lonlat=cells)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("winding", ["smaller", "cw", "ccw"])
+def test_no_side_is_in_doubt_with_winding(winding: str) -> None:
+    Grid.from_mesh(lonlat=[CAP], winding=winding)
+
+
+@pytest.mark.parametrize(("width", "told"), [(43, False), (44, True)])
+def test_half_a_steradian_is_told(width: float, told: bool) -> None:
+    box = [(0, 0), (0, 40), (width, 40), (width, 0)]
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        area = Grid.from_mesh(lonlat=[box]).areas[0]
+    assert abs(area - 0.5) < 0.01
+    assert (len(caught) == 1) == (area > 0.5) == told

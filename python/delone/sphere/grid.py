@@ -16,7 +16,7 @@ from delone.sphere.formats import Choices, read_cells
 from delone.sphere.gaussian import gaussian_bounds
 from delone.sphere.grid_cells import GridCells
 from delone.sphere.healpix import healpix_corners
-from delone.sphere.large import wound
+from delone.sphere.large import tell_clockwise, wound
 from delone.sphere.rings import as_bounds, as_corners, as_starts, merged_corners
 
 if TYPE_CHECKING:
@@ -411,9 +411,9 @@ class Grid(GridCells):
             Longitudes and latitudes instead of `xyz`.
         winding : {"smaller", "ccw", "cw"}, optional
             Which side of its corners a cell is on: the smaller side; the left, which is inside
-            counterclockwise corners; or the right. By default, it is the smaller side, and corners
-            that are not within a hemisphere raise an error. Cells beyond a hemisphere are divided
-            into triangles.
+            counterclockwise corners; or the right. By default, it is the smaller side, with a
+            warning where that is doubtful, and corners that are not within a hemisphere raise an
+            error. Cells beyond a hemisphere are divided into triangles.
         merge, degrees, workers
             As for `from_curvilinear`.
 
@@ -434,7 +434,10 @@ class Grid(GridCells):
         Warns
         -----
         PolygonWarning
-            With `winding`, several cells are larger than a hemisphere, so they overlap.
+            With `winding`, several cells are larger than a hemisphere, so they overlap. Without it,
+            a cell above 0.5 steradians, 20 million square kilometers on the Earth, is clockwise,
+            and it is the only cell, or others are not clockwise: the rest of the sphere may be
+            meant.
 
         Examples
         --------
@@ -517,9 +520,7 @@ class Grid(GridCells):
         given = rings_of.geometries(geometries, degrees=degrees, workers=workers)
         vectors, merged = merged_corners(given.vectors, _as_merge(merge))
         arrays = (vectors, given.rings, given.cells, given.holes)
-        if winding is not None:
-            arrays = wound(arrays, winding, workers)
-        return cls._of("arc", arrays, (len(given.cells) - 1,), merged, workers)
+        return cls._wound(arrays, (len(given.cells) - 1,), merged, winding, workers)
 
     @classmethod
     def from_voronoi(cls, diagram: Voronoi, *, workers: int | None = None) -> Self:
@@ -671,10 +672,24 @@ class Grid(GridCells):
     ) -> Self:
         """Return the grid of cells of one ring each."""
         vectors, merged = merged_corners(vectors, _as_merge(merge))
-        arrays = _alone(vectors, starts)
+        return cls._wound(_alone(vectors, starts), shape, merged, winding, workers)
+
+    @classmethod
+    def _wound(
+        cls,
+        arrays: tuple[Any, ...],
+        shape: tuple[int, ...],
+        merged: int,
+        winding: str | None,
+        workers: int | None,
+    ) -> Self:
+        """Return the grid of polygons on the side of their corners that `winding` selects."""
         if winding is not None:
             arrays = wound(arrays, winding, workers)
-        return cls._of("arc", arrays, shape, merged, workers)
+        made = cls._of("arc", arrays, shape, merged, workers)
+        if winding is None:
+            tell_clockwise(made._checked.turned, made.areas)
+        return made
 
 
 def _alone(vectors: Floats, starts: Rows) -> tuple[Any, ...]:

@@ -28,7 +28,8 @@ class GridReport(ReadOnly):
     repeated : int
         Corners that repeat the one before in their cell, and are ignored.
     reversed : ndarray of int64
-        Cells with clockwise corners, which are used in the opposite direction.
+        Cells with clockwise corners, which are used in the opposite direction: they are on the
+        smaller side of their corners, unless `winding` says otherwise.
     empty : ndarray of int64
         Cells with fewer than three distinct corners, or without area; they share nothing.
     concave : ndarray of int64

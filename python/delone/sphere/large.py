@@ -15,6 +15,7 @@ import numpy as np
 
 from delone import _core
 from delone._base.arrays import as_choice, as_workers
+from delone._base.counting import agreed, counted
 from delone._base.georeference import caller_level
 from delone.errors import CrossingSegmentsError, DirectionError, InputError
 from delone.sphere.constrained import WINDINGS, ConstrainedDelaunay, Given
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
     Arrays = tuple[Floats, Rows, Rows, Bools]
 
-__all__ = ["LARGE", "Parts", "overlaps_of", "wound"]
+__all__ = ["LARGE", "Parts", "overlaps_of", "tell_clockwise", "wound"]
 
 # The core's numbers for faults of cells.
 _EMPTY, LARGE = 1, 3
@@ -36,6 +37,9 @@ _BETWEEN = np.array([v for v in itertools.product((-1.0, 0.0, 1.0), repeat=3) if
 _MOST = 1000
 # Sums of rounded areas, in steradians, count as half of the sphere within this.
 _HALF = 1e-9
+# Smaller clockwise cells, in steradians, are hardly meant as the rest of the sphere. On the Earth
+# these are 20 million square kilometers; the largest country has 17.
+_BROAD = 0.5
 
 
 class _Checked(NamedTuple):
@@ -163,6 +167,21 @@ def wound(arrays: Arrays, winding: str, workers: int | None) -> Arrays:
         )
     # Rings that cancel out have no triangles, and remain an error.
     return _replaced(arrays, {row: p.triangles for row, p in parts.items() if len(p.triangles)})
+
+
+def tell_clockwise(turned: Bools, areas: Floats) -> None:
+    """Warn of large cells that are clockwise, unless all are, so that their rest may be meant."""
+    broad, used = np.flatnonzero(turned & (areas > _BROAD)), turned[areas > 0]
+    if not len(broad) or (used.all() and len(used) > 1):
+        return
+    share = 100 * float(areas[broad[0]]) / (4 * np.pi)
+    warnings.warn(
+        f"{counted(len(broad), 'large cell')} {agreed(len(broad), 'is', 'are')} clockwise, first "
+        f"cell {broad[0]}, whose smaller side has {share:.3g} % of the sphere and is taken: give "
+        'winding="smaller" if it is meant, and "ccw" if the rest of the sphere is',
+        PolygonWarning,
+        stacklevel=caller_level(),
+    )
 
 
 def _triangles(arrays: Arrays, row: int, winding: str, workers: int | None) -> _Part:
