@@ -336,3 +336,27 @@ def test_shortest_sides(size: int) -> None:
     whole = one.check(True, 1).areas
     for found in (one.overlaps(all_of_it, 1).first, all_of_it.overlaps(one, 1).second):
         assert found == pytest.approx(whole, rel=1e-14, abs=0)
+
+
+def test_a_concave_cell_with_a_corner_opposite_to_the_pole_of_its_parts() -> None:
+    """Two arms from the south pole, whose parts in the north are measured from their other end."""
+    arms = [(0, 0, -1), (0.5, 0.3, 1), (1, 0, -0.2), (0.5, -0.3, 1)]
+    for axes in itertools.permutations(range(3)):
+        cell = Grid.from_mesh(np.array([arms])[:, :, axes], winding="smaller")
+        assert len(cell.report.concave) == 1
+        for other in (Grid.from_healpix(8), cell):
+            shared = Overlaps(cell, other)
+            assert abs(shared.covered_source[0] - 1) < 1e-15
+            assert (shared.areas > 0).all()
+            again = Overlaps(other, cell)
+            assert np.allclose(np.sort(again.areas), np.sort(shared.areas), rtol=1e-13, atol=0)
+
+
+def test_a_long_cell_whose_first_corner_is_in_its_middle() -> None:
+    """Its latitudes follow from the farthest corner; rows of a reduced grid are asked for alone."""
+    rows = Grid.from_gaussian(24, "octahedral")
+    for lon in (180.0, 170.0):
+        long = Grid.from_mesh(lonlat=[[(lon, -40), (lon, 60), (lon - 5, 10)]], winding="smaller")
+        shared = Overlaps(long, rows)
+        assert abs(shared.covered_source[0] - 1) < 1e-14
+        assert abs(shared.areas.sum() / long.areas[0] - 1) < 1e-14
