@@ -1,17 +1,20 @@
 """Conservative weights on the sphere compared with YAC, their application, and memory; in turns.
 
 Both make their cells from the same arrays of corners in the timed call, and use one thread. YAC is
-left out where it is not installed; it needs an MPI library, such as the package ``openmpi``. Memory
-is what grids, overlaps and weights need beyond what the process held, in a process of its own.
+left out where it is not installed; it needs an MPI library, such as the package ``openmpi``. Areas
+in the plane are compared with ``geopandas.overlay``, if geopandas is installed. Memory is what
+grids, overlaps and weights need beyond what the process held, in a process of its own.
 ``python benchmarks/regrid.py --help`` has options.
 """
 
 import argparse
 import contextlib
+import importlib.util
 import itertools
 import subprocess
 import sys
 import time
+import warnings
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -20,7 +23,7 @@ import memory
 import numpy as np
 from sphere import Calls, directions, table
 
-from delone import sphere
+from delone import Overlaps, Voronoi, datasets, sphere
 
 # The second grid of most rows, in degrees.
 LON, LAT = np.arange(361.0), np.arange(-90.0, 91.0)
@@ -42,9 +45,10 @@ class Cells:
         x, y, z = self.places.T
         self.lonlat = np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))
 
-    def delone(self) -> sphere.Grid:
+    def delone(self, workers: int = 1) -> sphere.Grid:
         """A grid of delone."""
-        return sphere.Grid.from_mesh(self.places[self.corners], self.starts, merge=0.0, workers=1)
+        corners = self.places[self.corners]
+        return sphere.Grid.from_mesh(corners, self.starts, merge=0.0, workers=workers)
 
     def yac(self, yac: Any) -> Any:
         """A grid of YAC."""
@@ -56,14 +60,27 @@ class Cells:
 class Degrees:
     """Cells of one degree between meridians and parallels."""
 
-    def delone(self) -> sphere.Grid:
+    def delone(self, workers: int = 1) -> sphere.Grid:
         """A grid of delone."""
-        return sphere.Grid.from_lonlat(LON, LAT, workers=1)
+        return sphere.Grid.from_lonlat(LON, LAT, workers=workers)
 
     def yac(self, yac: Any) -> Any:
         """A grid of YAC."""
         lon, lat = np.radians(LON), np.radians(LAT)
         return yac.BasicGrid.reg_2d_new(next(NAMES), lon[:-1], lat, cyclic=[True, False])
+
+
+def cubed_sphere(n: int) -> Cells:
+    """The cells of a cubed sphere with n rows of equal angles on each face."""
+    turns = np.tan(np.linspace(-np.pi / 4, np.pi / 4, n + 1))
+    x, y = np.meshgrid(turns, turns)
+    face = np.stack((np.ones_like(x), x, y), axis=2)
+    around = (face[:-1, :-1], face[:-1, 1:], face[1:, 1:], face[1:, :-1])
+    one = np.stack(around, axis=2).reshape(-1, 3)
+    sides = [one, one * (-1, -1, 1)]
+    corners = np.concatenate([np.roll(side, k, axis=1) for side in sides for k in range(3)])
+    corners /= np.linalg.norm(corners, axis=1)[:, None]
+    return Cells(corners, np.arange(len(corners) // 4 + 1) * 4)
 
 
 def healpix(nside: int) -> Cells:
@@ -78,10 +95,10 @@ def voronoi(count: int, seed: int) -> Cells:
     return Cells(*made.rings[:2])
 
 
-def ours(source: Any, target: Any) -> Any:
+def ours(source: Any, target: Any, workers: int = 1) -> Any:
     """Weights of delone, from arrays."""
-    overlaps = sphere.Overlaps(source.delone(), target.delone(), workers=1)
-    return overlaps.to_weights("conservative")
+    grids = source.delone(workers), target.delone(workers)
+    return sphere.Overlaps(*grids, workers=workers).to_weights("conservative")
 
 
 def theirs(yac: Any, source: Any, target: Any, sizes: tuple[int, int]) -> Any:
@@ -110,7 +127,10 @@ def beside_yac(cases: dict[str, tuple[Any, Any]], runs: int) -> None:
     for title, (source, target) in cases.items():
         weights = ours(source, target)
         sizes = len(weights.source_areas), len(weights.target_areas)
-        calls: Calls = {"delone": lambda s=source, t=target: ours(s, t)}
+        calls: Calls = {
+            "delone": lambda s=source, t=target: ours(s, t),
+            "delone, two workers": lambda s=source, t=target: ours(s, t, 2),
+        }
         ones = np.ones(sizes[0])
         off = abs(weights.apply(ones) - 1).max()
         print(f"\n{title}: {len(weights.values):,} weights; constants differ by {off:.1e}", end="")
@@ -121,6 +141,53 @@ def beside_yac(cases: dict[str, tuple[Any, Any]], runs: int) -> None:
             print(f", and by {off:.1e} of YAC", end="")
         print()
         table(title, calls, runs)
+
+
+def hexagons(bounds: Any, side: float) -> Any:
+    """Hexagons over a box, whose neighbors share their corners exactly."""
+    import geopandas
+    import shapely
+
+    left, bottom, right, top = bounds
+    width, height = np.sqrt(3) * side, 1.5 * side
+    rows = np.arange(int((top - bottom) / height) + 2)
+    columns = np.arange(int((right - left) / width) + 2)
+    row, column = (x.ravel() for x in np.meshgrid(rows, columns))
+    across = 2 * column[:, None] + row[:, None] % 2 + np.array([1, 0, -1, -1, 0, 1])
+    up = 3 * row[:, None] + np.array([1, 2, 1, -1, -2, -1])
+    corners = np.stack((left + across * width / 2, bottom + up * side / 2), axis=2)
+    return geopandas.GeoDataFrame(geometry=list(shapely.polygons(corners)))
+
+
+def beside_overlay(runs: int) -> None:
+    """Areas that polygons share with hexagons, in the plane."""
+    import geopandas
+    import shapely
+
+    sites = np.random.default_rng(1).random((20_000, 2))
+    districts = Voronoi(sites, clip=(0, 0, 1, 1)).polygons()
+    whole = shapely.get_parts(shapely.geometry.shape(datasets.land()))
+    # On an equal-area map, in kilometers.
+    to_map = lambda x: 6371 * np.column_stack((np.radians(x[:, 0]), np.sin(np.radians(x[:, 1]))))  # noqa: E731
+    land = shapely.make_valid(shapely.transform(whole, to_map)).tolist()
+    for title, shapes, side in (("districts", districts, 0.005), ("land masses", land, 100.0)):
+        source = geopandas.GeoDataFrame(geometry=list(shapes))
+        target = hexagons(source.total_bounds, side)
+        shared = Overlaps(source, target, workers=1)
+        off = np.nanmax(abs(shared.covered_source - 1))
+        one, other = (
+            x.assign(**{name: range(len(x))}) for x, name in ((source, "i"), (target, "j"))
+        )
+        calls: Calls = {
+            "delone": lambda s=source, t=target: Overlaps(s, t, workers=1),
+            "geopandas.overlay": lambda s=one, t=other: geopandas.overlay(s, t).area,
+        }
+        name = f"{len(source):,} {title} and {len(target):,} hexagons"
+        print(f"\n{name}: {len(shared.areas):,} pairs; covered shares differ from 1 by {off:.1e}")
+        with warnings.catch_warnings():
+            # About pieces that are lines and points.
+            warnings.simplefilter("ignore", UserWarning)
+            table(name, calls, runs)
 
 
 def application(nside: int, runs: int) -> None:
@@ -170,6 +237,7 @@ def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--nside", type=int, default=64, help="of HEALPix beside YAC")
+    parser.add_argument("--cube", type=int, default=60, help="rows of a face of the cubed sphere")
     parser.add_argument("--sites", type=int, default=100_000, help="of Voronoi cells")
     parser.add_argument("--largest", type=int, default=256, help="of HEALPix to 0.25 degrees")
     parser.add_argument("--runs", type=int, default=5, help="of each call")
@@ -179,6 +247,7 @@ def main() -> None:
         held(options.held, 0.25)
         return
     cases = {
+        f"cubed sphere {options.cube} to 1 degree": (cubed_sphere(options.cube), Degrees()),
         f"HEALPix {options.nside} to 1 degree": (healpix(options.nside), Degrees()),
         f"Voronoi {options.sites:,} to {options.sites:,}": (
             voronoi(options.sites, 1),
@@ -186,6 +255,8 @@ def main() -> None:
         ),
     }
     beside_yac(cases, options.runs)
+    if importlib.util.find_spec("geopandas"):
+        beside_overlay(options.runs)
     application(options.nside, options.runs)
     peaks(options.largest)
 
