@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, Self
 
@@ -51,11 +52,12 @@ from delone.cli.surfaces import (
 from delone.cli.tables import APPENDED, TABLE_SUFFIXES, ready_table, write_table
 from delone.cli.tiled import surface_or_tiles
 from delone.io import read_geometries, write_drawing
+from delone.io.lines import LineBlock, write_line_layer
 from delone.terrain import TIN, Contours, Volumes
 from delone.terrain.contouring import MOST
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Iterator
 
     from delone.distributed import TiledDelaunay
     from delone.terrain import Bands, Volume
@@ -389,37 +391,73 @@ def _write_parts(
     parts: Iterable[Contours], output: list[Path], watch: Stopwatch, say: Callable[[str], None]
 ) -> _Drawn:
     """Write contours as they are computed, so that only some of them are in memory at a time."""
-    found, begun = _Drawn(), False
-    waiting = iter(parts)
+    tally, begun = _Tally(parts, watch, say), False
     with ExitStack() as stack:
         with writing():
             targets = [stack.enter_context(replacing(path)) for path in output]
-        while True:
-            with watch.stage("contours"):
-                part = next(waiting, None)
-            if part is None:
-                break
-            found = found.plus(part)
-            say(f"writing lines: {found.number:,}")
-            rows = part.to_geopandas() if output else None
-            for path, target in zip(output, targets, strict=True):
-                with writing(), watch.stage(f"write {path.name}"):
-                    write_table(rows, target, layer="contours", append=begun)
-            begun = True
+        if len(output) == 1 and _takes_arrays(output[0]):
+            with writing(), watch.stage(f"write {output[0].name}"):
+                write_contours(targets[0], tally, "contours")
+        else:
+            for part in tally:
+                rows = part.to_geopandas() if output else None
+                for path, target in zip(output, targets, strict=True):
+                    with writing(), watch.stage(f"write {path.name}"):
+                        write_table(rows, target, layer="contours", append=begun)
+                begun = True
         with writing():
             stack.close()
-    return found
+    return tally.found
+
+
+class _Tally:
+    """Parts of contours, and the sums of their figures; computing them is a stage of its own."""
+
+    def __init__(
+        self, parts: Iterable[Contours], watch: Stopwatch, say: Callable[[str], None]
+    ) -> None:
+        self.found, self._parts, self._watch, self._say = _Drawn(), parts, watch, say
+
+    def __iter__(self) -> Iterator[Contours]:
+        waiting = iter(self._parts)
+        while True:
+            with self._watch.stage("contours"):
+                part = next(waiting, None)
+            if part is None:
+                return
+            self.found = self.found.plus(part)
+            self._say(f"writing lines: {self.found.number:,}")
+            yield part
+
+
+def _takes_arrays(path: Path) -> bool:
+    """Return whether contours are written to a file without a table of geometries."""
+    return path.suffix.lower() == ".gpkg"
+
+
+def write_contours(target: Path, parts: Iterable[Contours], layer: str) -> None:
+    """Write contours to a GeoPackage from their arrays."""
+    waiting = iter(parts)
+    first = next(waiting)
+    blocks = (
+        LineBlock(part.points, part.starts, part.level, part._fields())
+        for part in chain([first], waiting)
+    )
+    dtypes = {name: str(values.dtype) for name, values in first._fields().items()}
+    write_line_layer(target, blocks, layer=layer, crs=first.crs, dtypes=dtypes)
 
 
 def write_lines(found: Any, output: list[Path], watch: Stopwatch, layer: str) -> None:
     """Write contours, bands or labels to tables, contours also to drawings."""
+    rows: Any = None
     with writing(), ExitStack() as stack:
-        drawings = [path for path in output if path.suffix.lower() == ".dxf"]
-        rows = found.to_geopandas() if len(output) > len(drawings) else None
         for path in output:
             with watch.stage(f"write {path.name}"):
                 target = stack.enter_context(replacing(path))
-                if path in drawings:
+                if path.suffix.lower() == ".dxf":
                     write_drawing(target, found)
+                elif isinstance(found, Contours) and _takes_arrays(path):
+                    write_contours(target, [found], layer)
                 else:
+                    rows = found.to_geopandas() if rows is None else rows
                     write_table(rows, target, layer=layer)

@@ -40,9 +40,12 @@ __all__ = [
     "attribute_names",
     "from_frame",
     "geometries_of",
+    "plain_name",
     "read_geometries",
     "read_points",
+    "require_index",
     "require_libraries",
+    "system_of",
     "write_layer",
     "write_mesh",
 ]
@@ -247,7 +250,7 @@ def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
     require_libraries(path.suffix.lower())
     edges = wanted.edges
     parts = content(triangulation, z=wanted.z, edges=edges, attributes=wanted.attributes).whole()
-    system = _system(wanted.crs, path.suffix.lower())
+    system = system_of(wanted.crs, path.suffix.lower())
     # Appending to GeoJSON is expensive in GDAL; it is a text format for small data.
     driver = "GeoJSON" if path.suffix.lower() == ".geojson" else "GPKG"
     count = len(parts.simplices)
@@ -263,7 +266,7 @@ def write_mesh(path: Path, triangulation: HasParts, wanted: Wanted) -> None:
         write_layer(path, to_geopandas(some, system), layer, driver=driver, **options)
 
 
-def _system(crs: str | None, suffix: str) -> Any:
+def system_of(crs: str | None, suffix: str) -> Any:
     """Return a reference system that geopandas accepts."""
     if not crs:
         return None
@@ -284,10 +287,10 @@ def write_layer(path: Path, frame: Any, layer: str, *, driver: str, **options: A
         # A survey without a reference system is common and needs no warning.
         warnings.filterwarnings("ignore", message=".*crs.*")
         if driver not in _IN_MEMORY:
-            name = _plain_name(path)
+            name = plain_name(path)
             pyogrio.write_dataframe(frame, name, layer=layer, driver=driver, **options)
             if driver == "GPKG":
-                _require_index(pyogrio, name, layer)
+                require_index(pyogrio, name, layer)
             return
         content = io.BytesIO()
         pyogrio.write_dataframe(
@@ -296,7 +299,7 @@ def write_layer(path: Path, frame: Any, layer: str, *, driver: str, **options: A
     path.write_bytes(content.getbuffer())
 
 
-def _plain_name(path: Path) -> str:
+def plain_name(path: Path) -> str:
     """Return a name that pyogrio cannot read as anything but this file."""
     try:
         return local_name(path)
@@ -304,7 +307,7 @@ def _plain_name(path: Path) -> str:
         raise OSError(str(error)) from error
 
 
-def _require_index(pyogrio: Any, name: str, layer: str) -> None:
+def require_index(pyogrio: Any, name: str, layer: str) -> None:
     """Verify that a GeoPackage has its spatial index, which is written last.
 
     GDAL does not report a failure.
