@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import numpy as np
 import pytest
@@ -104,3 +105,28 @@ def test_a_boundary_with_some_heights_does_not_lose_them():
     ring = np.array([(1, 1, 5), (3, 1, 5), (6, 6, np.nan)])
     with pytest.raises(InputError, match=r"outside the points at \(6, 6\): give it heights"):
         TIN.from_points(SQUARE, boundary=[ring])
+
+
+@pytest.mark.parametrize("duplicates", ["raise", "min", "max", "mean"])
+@pytest.mark.parametrize("side", [1, 4, 40, 400])
+def test_points_alone_are_as_points_without_a_line(duplicates: str, side: int) -> None:
+    """An empty sequence of lines takes the way of surfaces with lines."""
+    rng = np.random.default_rng(side)
+    # Few places: many points are at one; heights differ there.
+    points = rng.integers(0, side, (2_000, 3)) + rng.random((2_000, 3)) * (side == 1)
+    points[:, :2] *= 0.1
+    found: list[Any] = []
+    for lines in ({}, {"breaklines": []}):
+        try:
+            found.append(TIN.from_points(points, duplicates=duplicates, **lines))
+        except ConflictingValuesError as error:
+            found.append(error)
+    alone, lined = found
+    if isinstance(alone, ConflictingValuesError):
+        assert str(alone) == str(lined)
+        np.testing.assert_array_equal(alone.rows, lined.rows)
+        return
+    for name in ("points", "z", "simplices", "neighbors", "breaklines", "soft"):
+        one, other = getattr(alone, name), getattr(lined, name)
+        assert one.dtype == other.dtype
+        np.testing.assert_array_equal(one, other)

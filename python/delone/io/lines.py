@@ -1,7 +1,7 @@
 """Lines with columns as a layer of a GeoPackage, written as blocks of Arrow arrays.
 
-GDAL takes geometries as WKB (OGC Simple Features 1.2.1, section 8): a header of nine bytes, then the
-coordinates. The bytes of all lines of a block are made at once, without an object for each line.
+GDAL takes geometries as WKB (OGC Simple Features 1.2.1, section 8): a header of nine bytes, then
+the coordinates. The bytes of all lines of a block are made at once, without an object for each.
 """
 
 from __future__ import annotations

@@ -17,6 +17,7 @@ from delone._base.arrays import (
     require_finite,
     wrong_shape,
 )
+from delone._base.blocks import blocks
 from delone._base.georeference import (
     as_known_crs,
     caller_level,
@@ -39,6 +40,7 @@ from delone._base.units import (
 from delone._tiling.plane.topology import among, edge_keys, triangles_among
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.membership import inside
+from delone.delaunay import Delaunay
 from delone.errors import ConflictingValuesError, InputError
 from delone.terrain.adjustments import Adjustments, adjustments_of
 from delone.terrain.extent import Part, refuse_crossing_rings, within, without_outer
@@ -126,6 +128,13 @@ def build(
     limit = None if max_edge is None else as_positive(max_edge, name="max_edge")
     if as_flag(voids, name="voids") and limit is None:
         raise InputError("voids=True needs max_edge: longer edges span a void")
+    lined = (breaklines, soft_breaklines, boundary, holes, islands, level)
+    if limit is None and not near and all(each is None for each in lined):
+        return _without_lines(
+            bare(xyz, crs=crs, units=units, planar=planar),
+            {"duplicates": duplicates, "crossing": crossing, "tolerance": allowed},
+            workers,
+        )
     points = _points_of(xyz)
     system = system_of(crs, xyz)
     if system is None:
@@ -189,6 +198,31 @@ def build(
     return made._replace(adjustments=adjustments_of(merged, lakes))
 
 
+def _without_lines(
+    given: tuple[Floats, Floats, str | None, str | None],
+    policies: dict[str, Any],
+    workers: int | None,
+) -> Built:
+    """Triangulate points alone: only points at the same place have several heights."""
+    flat, z, system, heights_in = given
+    mesh = Delaunay(flat, planar=True, workers=workers)
+    first = mesh.duplicate_of
+    rows = np.flatnonzero(first != np.arange(mesh.npoints))
+    points, simplices = mesh.points, mesh.simplices
+    if len(rows):
+        several = np.unique(np.concatenate((first[rows], rows)))
+        claims = claims_of_points(first[several], z[several])
+        nothing = claims.among(np.zeros(len(several), dtype=bool))
+        found = resolved(points, claims, nothing, **policies)
+        z[first[rows]] = found[first[rows]]
+        used = np.ones(len(points), dtype=bool)
+        used[rows] = False
+        points, z, simplices = points[used], z[used], _renumbered(used, simplices)
+    kept, none = np.ones(len(simplices), dtype=bool), np.empty((0, 2), dtype=np.int32)
+    soft = np.empty(0, dtype=bool)
+    return Built(points, z, simplices, mesh.neighbors, kept, none, soft, system, heights_in)
+
+
 @contextmanager
 def _rows_of(kept: Bools) -> Iterator[None]:
     """Make errors name rows of all points, including those that are left out."""
@@ -207,11 +241,20 @@ def bare(
     xyz: Any, *, crs: Any, units: Any, planar: bool
 ) -> tuple[Floats, Floats, str | None, str | None]:
     """Return positions, heights, reference system and units of points without lines."""
-    points, system = _points_of(xyz), system_of(crs, xyz)
+    if _is_point_set(xyz) and xyz.z is not None and _are_finite(xyz.points, xyz.z):
+        # Without a copy of all columns.
+        flat, z = xyz.points, np.array(xyz.z, dtype=np.float64)
+    else:
+        points = _points_of(xyz)
+        flat, z = np.ascontiguousarray(points[:, :2]), np.ascontiguousarray(points[:, 2])
+    system = system_of(crs, xyz)
     heights_in = settled_units(units, system, None, str(system))
-    flat = np.ascontiguousarray(points[:, :2])
     warn_of_degrees(xyz, flat, planar=planar, by=degrees_of(system))
-    return flat, np.ascontiguousarray(points[:, 2]), system, heights_in
+    return flat, z, system, heights_in
+
+
+def _are_finite(*arrays: Floats) -> bool:
+    return all(bool(np.isfinite(array).all()) for array in arrays)
 
 
 def _heights(mesh: ConstrainedDelaunay, points: Floats, lines: Lines, **policies: Any) -> Floats:
@@ -234,17 +277,20 @@ def _heights(mesh: ConstrainedDelaunay, points: Floats, lines: Lines, **policies
 
 def _points_of(xyz: Any) -> Floats:
     """Return points with heights, (n, 3), finite."""
-    z = getattr(xyz, "z", None)
-    if hasattr(xyz, "points") and hasattr(xyz, "attributes"):  # a PointSet
-        if z is None:
+    if _is_point_set(xyz):
+        if xyz.z is None:
             raise InputError("the points have no heights: name their column (x, y and z)")
-        found = np.column_stack((xyz.points, z))
+        found = np.column_stack((xyz.points, xyz.z))
     else:
         found = as_points(xyz, name="xyz")
         if found.shape[1] != 3:
             raise wrong_shape("xyz", "(n, 3)", found)
     require_finite(found, name="xyz")
     return found
+
+
+def _is_point_set(xyz: Any) -> bool:
+    return hasattr(xyz, "points") and hasattr(xyz, "attributes")
 
 
 def system_of(crs: Any, *data: Any) -> str | None:
@@ -356,15 +402,25 @@ def compact(  # noqa: PLR0917
     if not kept.any():
         raise InputError("no triangle is left: max_edge is too small, or the boundary is empty")
     used = mesh.duplicate_of == np.arange(mesh.npoints)
-    number = np.asarray(np.cumsum(used) - 1, dtype=np.int32)
     return Built(
         mesh.points[used],
         z[used],
-        number[mesh.simplices],
+        _renumbered(used, mesh.simplices),
         mesh.neighbors,
         kept,
-        number[mesh.segments],
+        _renumbered(used, mesh.segments),
         soft,
         crs,
         units,
     )
+
+
+def _renumbered(used: Bools, simplices: Indices) -> Indices:
+    """Return simplices whose corners are numbered among the rows in use."""
+    number = np.cumsum(used, dtype=np.int32)
+    number -= 1
+    found = np.empty_like(simplices)
+    for rows in blocks(len(simplices)):
+        # Every corner is a row; with the default mode, NumPy would copy the result once more.
+        np.take(number, simplices[rows], out=found[rows], mode="clip")
+    return found
