@@ -230,12 +230,13 @@ class Delaunay(PointTriangulation):
     ) -> None:
         if unknown:
             _refuse_options(unknown)
-        own = own_copy(points, ndim=None, most=MOST)
+        stays = as_choice(flat, ("raise", "project"), name="flat") == "project"
+        # Three points span a plane, however many coordinates they have.
+        own = own_copy(points, ndim=None, most=MOST, few=stays)
         warn_of_degrees(points, own, planar=planar)
         # Few points are one task, and counting cores takes as long as some triangulations.
         threads = 1 if workers is None and len(own) < _FEW else as_workers(workers)
         _require_room(own, max_bytes)
-        stays = as_choice(flat, ("raise", "project"), name="flat") == "project"
         if stays and own.shape[1] < _MANY:
             raise InputError(_FLAT_ELSEWHERE)
         methods = _METHODS[own.shape[1] > 2]

@@ -197,13 +197,14 @@ class ConvexHull(Complex):
         max_bytes: int | None = None,
         flat: str = "raise",
     ) -> None:
-        own = own_copy(points, ndim=None, most=MOST)
+        stays = as_choice(flat, ("raise", "project"), name="flat") == "project"
+        # Three points span a plane, however many coordinates they have.
+        own = own_copy(points, ndim=None, most=MOST, few=stays)
         require_finite(own)
         if own.shape[1] > 3:
             require_room(own, max_bytes, hull=True)
         elif max_bytes is not None:
             raise InputError("max_bytes is only available from 4-D on, where facets are many")
-        stays = as_choice(flat, ("raise", "project"), name="flat") == "project"
         if stays and own.shape[1] in _ARRAYS_OF:
             raise InputError('flat="project" is only available from 4-D on')
         if workers is not None:

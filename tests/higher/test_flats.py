@@ -235,6 +235,49 @@ def test_queries_are_projected_along_the_other_axes() -> None:
     assert mesh.nearest([(np.nan, 0, 0, 0)]).tolist() == [-1]
 
 
+@pytest.mark.parametrize(("d", "k", "n"), CASES)
+def test_the_nearest_vertex_is_that_of_integers(d: int, k: int, n: int) -> None:
+    points = tilted(d, k, 3 * n, 7)
+    mesh = Delaunay(points, flat="project")
+    # Many of these points are at the same distance from several vertices.
+    queries = np.random.default_rng(d).integers(-4, 9, (300, d)) / 2
+    queries[::2] = points[np.random.default_rng(k).integers(0, len(points), (150, 2))].mean(axis=1)
+    squares = ((2 * queries[:, None] - 2 * points) ** 2).astype(np.int64).sum(axis=2)
+    assert (np.sort(squares, axis=1)[:, 0] == np.sort(squares, axis=1)[:, 1]).sum() > 5
+    # The first of equal rows is the vertex, and the first of several vertices is found.
+    for workers in (1, 2):
+        again = Delaunay(points, flat="project", workers=workers)
+        assert np.array_equal(again.nearest(queries), squares.argmin(axis=1))
+    assert mesh.nearest(queries.reshape(3, 100, d)).shape == (3, 100)
+    assert mesh.nearest(np.full((1, d), np.inf)).tolist() == [-1]
+
+
+def test_three_points_span_a_plane() -> None:
+    for d in (4, 5, 8):
+        points = np.eye(3, d)
+        mesh, hull = Delaunay(points, flat="project"), ConvexHull(points, flat="project")
+        assert sorted(mesh.simplices[0].tolist()) == [0, 1, 2]
+        assert mesh.volumes == pytest.approx([3**0.5 / 2])
+        assert (len(hull.simplices), len(hull.vertices)) == (3, 3)
+        assert hull.area == pytest.approx(3 * 2**0.5)
+        assert mesh.validate()
+        assert hull.validate()
+        # As a list, and as a pickle.
+        assert len(Delaunay(points.tolist(), flat="project").simplices) == 1
+        again = pickle.loads(pickle.dumps(mesh))
+        assert np.array_equal(again.simplices, mesh.simplices)
+        # Two points are on a line, and without the argument, three rows of five columns are
+        # probably three lists of coordinates.
+        with pytest.raises(delone.DegenerateInputError, match="three that are not on one line"):
+            Delaunay(points[:2], flat="project")
+        with pytest.raises(delone.DegenerateInputError, match="three that are not on one line"):
+            ConvexHull(np.outer(np.arange(3.0), np.ones(d)), flat="project")
+        with pytest.raises(delone.ShapeError, match="transpose it"):
+            Delaunay(points)
+        with pytest.raises(delone.ShapeError, match="transpose it"):
+            ConvexHull(points)
+
+
 def test_files_pickles_and_faults(tmp_path: Path) -> None:
     points = tilted(6, 3, 20, 4)
     both: tuple[Any, ...] = Delaunay(points, flat="project"), ConvexHull(points, flat="project")
@@ -276,7 +319,7 @@ def test_errors_name_it_and_what_it_cannot_do() -> None:
         for few in (line, line[:1], line[:0]):
             with pytest.raises(delone.DegenerateInputError) as caught:
                 made(few, flat="project")
-            assert "project" not in str(caught.value)
+            assert "or pass flat" not in str(caught.value)
     # Fewer points than coordinates may span a flat.
     assert Delaunay(points[:4], flat="project").nsimplex >= 1
     mesh = Delaunay(points, flat="project")

@@ -191,7 +191,6 @@ ALLOWED: dict[str, dict[str, str]] = {
     "_tiling/higher/spheres.py": {
         "np.abs(centers[t] - centers[u]) > size * _APART + _LEAST": FILTER,
     },
-    "_tiling/higher/flat_dimension.py": {"squares > least * _CLOSE + _LEAST": FILTER},
     "voronoi/thin.py": {
         "perimeters > 0": EMPTY,
         "areas[rows] > _ROUNDING * largest * perimeters[rows]": FILTER,

@@ -65,21 +65,27 @@ _REFUSED_KINDS = {
 
 
 def as_points(
-    points: ArrayLike, *, ndim: int | None = None, most: int = 3, name: str = "points"
+    points: ArrayLike,
+    *,
+    ndim: int | None = None,
+    most: int = 3,
+    name: str = "points",
+    few: bool = False,
 ) -> NDArray[np.float64]:
     """Return points as a C-contiguous float64 array with exactly the values given, including NaN.
 
-    From 2 to `most` columns from anything array-like; `ndim` requires a number. No copy is made if
-    none is needed, so the result may be the input itself, even if read-only: never modify it.
+    From 2 to `most` columns from anything array-like; `ndim` requires a number. Two or three rows
+    of more columns are only taken for points with `few`. No copy is made if none is needed, so the
+    result may be the input itself, even if read-only: never modify it.
     """
     wanted = range(2, most + 1) if ndim is None else (ndim,)
-    if _is_right(points, wanted) and not _is_across(points, wanted):
+    if _is_right(points, wanted) and (few or not _is_across(points, wanted)):
         return points
     array = as_plain_array(_coordinates(points, ndim, name), name)
     _refuse_columns(points, array, name)
     refuse_geometries(array, name)
     _refuse_kind(array, name)
-    _refuse_shape(array, wanted, name)
+    _refuse_shape(array, wanted, name, few=few)
     if array.dtype.kind in "iu":
         _refuse_large_integers(array, name)
     elif array.dtype.itemsize > 8:
@@ -500,8 +506,10 @@ def _refuse_kind(array: NDArray[Any], name: str) -> None:
     raise DtypeError(f"{name} contains {what} (dtype {array.dtype}), not real numbers; {hint}")
 
 
-def _refuse_shape(array: NDArray[Any], wanted: Sequence[int], name: str) -> None:
-    if array.ndim == 2 and array.shape[1] in wanted and not _is_across(array, wanted):
+def _refuse_shape(
+    array: NDArray[Any], wanted: Sequence[int], name: str, *, few: bool = False
+) -> None:
+    if array.ndim == 2 and array.shape[1] in wanted and (few or not _is_across(array, wanted)):
         return
     shapes = " or ".join(f"(n, {d})" for d in wanted)
     if len(wanted) > 2:

@@ -132,9 +132,11 @@ def sealed(array: NDArray[Any]) -> NDArray[Any]:
     return np.asarray(array.data)
 
 
-def own_copy(points: ArrayLike, *, ndim: int | None = 2, most: int = 3) -> NDArray[np.float64]:
+def own_copy(
+    points: ArrayLike, *, ndim: int | None = 2, most: int = 3, few: bool = False
+) -> NDArray[np.float64]:
     """Return points, like `as_points`, that cannot be changed, even while the core runs."""
-    array = as_points(points, ndim=ndim, most=most)
+    array = as_points(points, ndim=ndim, most=most, few=few)
     if array is points:
         return copied(array)
     if isinstance(points, list | tuple):

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from delone import _core
 from delone._tiling.higher.dimension import HIGHER, table
 from delone._tiling.higher.flats import axes_of
 from delone._tiling.plane.dimension import PLANE
@@ -19,15 +19,14 @@ __all__ = ["FLATS"]
 
 # By the dimension of the flat.
 _DIMENSIONS = {2: PLANE, 3: SPACE} | HIGHER
-# Squared distances are compared exactly up to this factor times the smallest, plus this number.
-_CLOSE, _LEAST = 1 + 2.0**-40, 2.0**-1000
 
 
 class FlatLocator:
     """The locator in a flat: points are projected to it along the other axes."""
 
     def __init__(self, points: Floats, simplices: Indices, neighbors: Indices) -> None:
-        self._points, self._rows = points, np.unique(simplices)
+        self._points, self._simplices = points, simplices
+        self._sites: _core.LocatorN | None = None
         self._axes = axes_of(points, simplices[0])
         self._within = _DIMENSIONS[len(self._axes)]
         self._index = self._within.locator(self._projected(points), simplices, neighbors)
@@ -46,21 +45,16 @@ class FlatLocator:
         weights[simplex < 0] = np.nan
         return simplex, weights
 
-    def nearest(self, xi: Floats, _: int) -> Indices:
-        """Return the nearest vertex to each point, the first of several, exactly. O(n) each."""
-        sites = self._points[self._rows]
-        found = np.full(len(xi), -1, dtype=np.int32)
-        for i in np.flatnonzero(np.isfinite(xi).all(axis=1)).tolist():
-            with np.errstate(over="ignore"):
-                squares = ((sites - xi[i]) ** 2).sum(axis=1)
-            least = squares.min()
-            close = np.flatnonzero(~(squares > least * _CLOSE + _LEAST))
-            found[i] = self._rows[min(close.tolist(), key=lambda row: _square(sites[row], xi[i]))]
-        return found
-
-
-def _square(a: Floats, b: Floats) -> Fraction:
-    return sum(((Fraction(x) - Fraction(y)) ** 2 for x, y in zip(a, b, strict=True)), Fraction(0))
+    def nearest(self, xi: Floats, workers: int) -> Indices:
+        """Return the nearest vertex to each point, the first of several, exactly."""
+        if self._sites is None:
+            # The tree of boxes over the vertices of simplices, of which no more is needed than that
+            # all vertices are in one of them: as many rows as fit, the last one again and again.
+            corners = self._points.shape[1] + 1
+            rows = np.unique(self._simplices)
+            rows = np.pad(rows, (0, -len(rows) % corners), mode="edge").reshape(-1, corners)
+            self._sites = _core.LocatorN(self._points, rows, np.full_like(rows, -1))
+        return self._sites.nearest(xi, workers)
 
 
 # By the number of coordinates and the dimension of a flat.

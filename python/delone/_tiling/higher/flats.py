@@ -59,8 +59,9 @@ class Flat:
 
 
 def flat_of(points: Floats, error: DegenerateInputError) -> Flat:
-    """Return the flat of points; raise the error if they are on one line."""
+    """Return the flat of points; raise the error, and say so, if they are on one line."""
     if len(error.chain) <= _LEAST:
+        error.args = (f'{error}; with flat="project", three that are not on one line are enough',)
         raise error
     return Flat(points, error.chain)
 
