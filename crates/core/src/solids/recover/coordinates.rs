@@ -186,6 +186,18 @@ impl Coordinates {
         filtered([p, q, r, s]).unwrap_or_else(|| self.orient_wide([a, b, c, d]))
     }
 
+    /// Whether the boxes of a segment and a triangle have no point in common. Rounding keeps the
+    /// order, so nearest doubles that differ prove it.
+    #[inline]
+    pub fn are_apart(&self, segment: [u32; 2], triangle: [u32; 3]) -> bool {
+        let [a, b] = segment.map(|v| self.near(v));
+        let [p, q, r] = triangle.map(|v| self.near(v));
+        (0..3).any(|k| {
+            let (low, high) = (a[k].min(b[k]), a[k].max(b[k]));
+            p[k].min(q[k]).min(r[k]) > high || p[k].max(q[k]).max(r[k]) < low
+        })
+    }
+
     /// The same in integers.
     #[cold]
     fn orient_wide(&self, vertices: [u32; 4]) -> Sign {

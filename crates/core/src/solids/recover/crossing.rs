@@ -94,6 +94,9 @@ impl Work<'_> {
         if [p, q, r].contains(&a) || [p, q, r].contains(&b) {
             return false;
         }
+        if self.mesh.points.are_apart([a, b], [p, q, r]) {
+            return false;
+        }
         let side = self.orient(p, q, r, a);
         if side.is_zero() || self.orient(p, q, r, b) != -side {
             return false;

@@ -274,6 +274,10 @@ impl Work<'_> {
             .iter()
             .map(|&v| self.face_cost(goal, [a, b, v]));
         let old = faces.sum::<usize>() + self.edge_cost(goal, a, b);
+        // No change has fewer crossings than none.
+        if old + slack == 0 {
+            return Ok(false);
+        }
         let Some(new) = self.cheapest(&ring, goal, old + slack) else {
             return Ok(false);
         };

@@ -71,6 +71,8 @@ pub struct Mesh {
     /// Marks of tetrahedra that the current search has visited.
     seen: Vec<u32>,
     search: u32,
+    /// The tetrahedra of the search for an edge; kept for its memory.
+    open: Vec<u32>,
     sides: Vec<Side>,
 }
 
@@ -92,6 +94,7 @@ impl Mesh {
             free: Vec::new(),
             seen,
             search: 0,
+            open: Vec::new(),
             sides: Vec::new(),
         })
     }
@@ -170,19 +173,43 @@ impl Mesh {
         let mut most = 64;
         loop {
             for (from, to) in [(a, b), (b, a)] {
-                let star = self.star(from, most);
-                let found = star
-                    .iter()
-                    .find(|&&t| self.corners[t as usize].contains(&to));
-                if let Some(&t) = found {
-                    return Some(t);
-                }
-                if star.len() < most {
-                    return None;
+                let (count, found) = self.beside(from, to, most);
+                if found.is_some() || count < most {
+                    return found;
                 }
             }
             most *= 8;
         }
+    }
+
+    /// The first tetrahedron of a vertex that also has another one, as `star` finds them, and the
+    /// number of tetrahedra visited, about `most` at most.
+    fn beside(&mut self, v: u32, other: u32, most: usize) -> (usize, Option<u32>) {
+        let start = self.at[v as usize];
+        let mut found = std::mem::take(&mut self.open);
+        found.clear();
+        let mut hit = None;
+        if start != NONE {
+            self.new_search();
+            self.is_new(start);
+            found.push(start);
+            hit = Some(start).filter(|&t| self.corner(t, other).is_some());
+        }
+        let mut next = 0;
+        while hit.is_none() && next < found.len() && found.len() < most {
+            let t = found[next];
+            next += 1;
+            for k in 0..4 {
+                let u = self.across[t as usize][k];
+                if self.corners[t as usize][k] != v && u != NONE && self.is_new(u) {
+                    found.push(u);
+                    hit = hit.or(Some(u).filter(|&u| self.corner(u, other).is_some()));
+                }
+            }
+        }
+        let count = found.len();
+        self.open = found;
+        (count, hit)
     }
 
     /// The tetrahedra around an edge that one of them has; `None` if the edge is on the hull.
