@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from delone._base.files import no_folder, not_regular
+from delone._base.files import no_folder, not_regular, path_of
 from delone.errors import DeloneError, OutputError
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ _PROBE = 1 << 20
 def check_target(path: str | os.PathLike[str]) -> Path:
     """Return the file to be written, behind symbolic links; an OSError if it cannot be written."""
     # A rename would replace the link, not the file that it points to.
-    target = Path(os.path.realpath(path))
+    target = Path(os.path.realpath(path_of(path)))
     if target.is_symlink():
         raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(path))
     if not target.parent.is_dir():

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._base.arrays import as_workers
+from delone._base.arrays import as_choice, as_plain_array, as_workers
 from delone._base.immutable import sealed
 from delone._base.renames import renamed
 from delone._tiling.complex import Stored
 from delone.areal.cells import as_cells
 from delone.areal.shared import OverlapReport, SharedAreas
-from delone.areal.weights import AreaWeights
+from delone.areal.weights import METHODS, AreaWeights
 from delone.errors import DtypeError, InputError, ShapeError
 
 if TYPE_CHECKING:
@@ -212,27 +212,32 @@ class Overlaps(SharedAreas[AreaWeights], Stored):
         """
         if not isinstance(methods, Mapping):
             raise DtypeError(f"methods must map columns to methods, got {type(methods).__name__}")
+        if not isinstance(data, Mapping) and not hasattr(data, "columns"):
+            raise DtypeError(
+                f"data must be a table or a mapping of columns, got {type(data).__name__}"
+            )
         found: dict[str, NDArray[Any]] = {}
         made: dict[str, AreaWeights] = {}
         for column, method in methods.items():
             if column not in data:
                 raise InputError(f"data has no column {column!r:.60}")
-            values = np.asarray(data[column])
+            values = as_plain_array(data[column], f"column {column!r:.60}")
+            kind = as_choice(method, METHODS, name="method")
             count = len(self.source_areas)
             if values.shape != (count,):
                 raise ShapeError(
                     f"column {column!r:.60} must have one value for each of {count} source cells, "
                     f"got shape {values.shape}"
                 )
-            if method not in made:
-                made[method] = self.to_weights(method)
+            if kind not in made:
+                made[kind] = self.to_weights(kind)
             options: dict[str, Any] = {"skipna": skipna, "min_fraction": min_fraction}
             # Integers have no NaN for cells without a value.
             numbers = _numbers(values)
             found[column] = (
-                _of_text(made[method], column, values, options)
+                _of_text(made[kind], column, values, options)
                 if numbers is None
-                else made[method].apply(numbers, **options)
+                else made[kind].apply(numbers, **options)
             )
         return found
 

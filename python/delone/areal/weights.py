@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_plain_array, as_workers, wrong_shape
+from delone._base.arrays import as_flag, as_plain_array, as_workers, wrong_shape
 from delone._base.counting import agreed, counted
 from delone._base.immutable import sealed
 from delone._base.numbers import as_between
@@ -194,6 +194,7 @@ class AreaWeights(Paired):
         array([[nan]])
         """
         least = as_between(min_fraction, 0, 1, name="min_fraction")
+        skipna = as_flag(skipna, name="skipna")
         given, lead, shape = self._flat(values)
         found: NDArray[Any]
         if self._method == "majority":
@@ -335,7 +336,7 @@ def as_mask(mask: ArrayLike | None, shape: tuple[int, ...], name: str) -> Bools 
     """Return which cells take part, (n,)."""
     if mask is None:
         return None
-    array = np.asarray(mask)
+    array = as_plain_array(mask, name)
     if array.dtype.kind not in "biu":
         raise DtypeError(f"{name} must be boolean or 0 and 1, got {array.dtype}")
     count = int(np.prod(shape))

@@ -74,7 +74,7 @@ def beside(
         crs = data.crs if crs is None else crs
         data = data.drop(columns=data.geometry.name)
     pandas = require("pandas", extra="geo", what="a table of geometries")
-    frame = _checked(pandas.DataFrame(data), len(shapes), {*own, "geometry"}, of)
+    frame = _checked(_framed(pandas, data), len(shapes), {*own, "geometry"}, of)
     geometry = geopandas.GeoSeries(shapes, index=frame.index, crs=crs)
     whole = pandas.concat([pandas.DataFrame(own, index=frame.index), frame], axis=1)
     return geopandas.GeoDataFrame(whole, geometry=geometry)
@@ -94,9 +94,17 @@ def columns_beside(
     if hasattr(data, "geometry") and hasattr(data, "crs"):
         data = data.drop(columns=data.geometry.name)
     count = len(table) if repeats is None else len(repeats)
-    frame = _checked(pandas.DataFrame(data), count, set(own), of)
+    frame = _checked(_framed(pandas, data), count, set(own), of)
     rows = np.repeat(np.arange(count), 1 if repeats is None else repeats)
     return pandas.concat([table, frame.iloc[rows].reset_index(drop=True)], axis=1)
+
+
+def _framed(pandas: Any, data: Any) -> Any:
+    """Return a DataFrame of a table or columns."""
+    try:
+        return pandas.DataFrame(data)
+    except ValueError as error:
+        raise InputError(f"data is not a table or a mapping of columns: {error}") from error
 
 
 def _checked(frame: Any, count: int, taken: set[str], of: str) -> Any:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._base.arrays import as_number, as_workers, wrong_shape
+from delone._base.arrays import as_number, as_plain_array, as_workers, wrong_shape
 from delone._base.extras import require
 from delone._base.numbers import as_positive
 from delone._base.values import require_real
@@ -95,7 +95,7 @@ def _means(grid: Any, field: Floats, pixels: Any) -> Floats:
 
 def _field(grid: Any, values: ArrayLike) -> Floats:
     """Return one value for each cell."""
-    array = np.asarray(values)
+    array = as_plain_array(values, "values")
     require_real(array, "values", kinds="iufb")
     if array.shape not in {grid.grid_shape, (grid.ncells,)}:
         raise wrong_shape("values", f"{grid.grid_shape} or ({grid.ncells},)", array)
@@ -105,7 +105,8 @@ def _field(grid: Any, values: ArrayLike) -> Floats:
 def _box(grid: Any, bounds: Sequence[float] | None) -> tuple[float, float, float, float]:
     """Return the left, bottom, right and top of the map."""
     if bounds is not None:
-        given = [as_number(bound, name="bounds") for bound in bounds]
+        listed = bounds if hasattr(bounds, "__iter__") else ()
+        given = [as_number(bound, name="bounds") for bound in listed]
         left, bottom, right, top = given if len(given) == 4 else (np.nan,) * 4
         right += 360.0 if right < left else 0.0
         if not (left < right <= left + 360 and -90 <= bottom < top <= 90):
@@ -188,6 +189,8 @@ def _draw(ax: Any, chains: list[Floats], left: float, right: float, **style: Any
 
 def _coast(land: Any) -> Floats:
     """Return the segments of the coast, (n, 2, 2), without those along the edges of the map."""
+    if not isinstance(land, dict) or land.get("type") != "MultiPolygon":
+        raise InputError(f"coast must be a GeoJSON MultiPolygon, got {land!r:.60}")
     parts = [np.zeros((0, 2, 2))]
     for polygon in land["coordinates"]:
         for ring in polygon:

@@ -14,6 +14,7 @@ import numpy as np
 
 from delone import _core
 from delone._base.arrays import (
+    as_flag,
     as_plain_array,
     as_points,
     as_vectors,
@@ -82,6 +83,7 @@ def directions_of(
             raise ShapeError(f"xyz must have shape (n, 3), got {vectors.shape}: see lonlat")
         return vectors
     _refuse_projected(lonlat, "lonlat")
+    degrees = as_flag(degrees, name="degrees")
     angles = as_points(lonlat, name="lonlat")  # type: ignore[arg-type]
     angles = angles if degrees else _quarters(angles, lonlat)
     if angles.shape[1] != 2:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._base.arrays import as_least
+from delone._base.arrays import as_index, as_least
 from delone.errors import InputError
 
 if TYPE_CHECKING:
@@ -16,10 +16,13 @@ if TYPE_CHECKING:
 
 __all__ = ["gaussian_bounds"]
 
+# More would be cells of a kilometer; the time of the roots grows with the cube.
+_MOST = 8192
+
 
 def gaussian_bounds(n: int, points: str | Sequence[int] | None) -> tuple[Floats, list[Floats]]:
     """Return the bounds of rows from north to south and of the columns of each, in degrees."""
-    half = as_least(n, 1, name="n")
+    half = as_index(n, 1, _MOST, name="n")
     counts = _counts(half, points)
     weights = np.polynomial.legendre.leggauss(2 * half)[1]
     # Sines of bounds from the north pole to the equator, and their mirror images.

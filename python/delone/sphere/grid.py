@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone._base.arrays import as_choice, as_flag, as_number, as_workers
+from delone._base.arrays import as_choice, as_flag, as_number, as_text, as_workers
 from delone.errors import InputError
 from delone.sphere import rings as rings_of
 from delone.sphere.boxes import rows_of
@@ -192,7 +192,8 @@ class Grid(GridCells):
         unit = None if degrees is None else as_flag(degrees, name="degrees")
         infer = as_flag(infer_bounds, name="infer_bounds")
         place = None if cells is None else as_choice(cells, ("nodes", "faces"), name="cells")
-        choices = Choices(name, coords, kind, unit, infer, place, near, workers)
+        own = None if name is None else as_text(name, name="name")
+        choices = Choices(own, coords, kind, unit, infer, place, near, workers)
         return cls._of_cells(read_cells(ds, choices), near, workers)
 
     @classmethod

@@ -9,9 +9,10 @@ import numpy as np
 from delone import _core
 from delone._base.arrays import as_workers
 from delone._base.counting import agreed, counted
+from delone._base.georeference import as_known_crs
 from delone._base.immutable import kept, sealed
 from delone._tiling.complex import Stored
-from delone.errors import DirectionError, ShapeError
+from delone.errors import DirectionError, DtypeError, ShapeError
 from delone.sphere import rings as rings_of
 from delone.sphere.coordinates import as_step, lonlat_of, units_of
 from delone.sphere.grid_report import GridFaults, GridReport
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
     from delone._base.types import Bools, Floats, Rows
 
-__all__ = ["GridCells"]
+__all__ = ["GridCells", "require_grid"]
 
 # Faults of cells by the core's numbers, and what to do about each.
 _FAULTS = {
@@ -41,6 +42,12 @@ _NONE = np.zeros(0, dtype=np.int64)
 # Names of arrays in files: for rows of cells, and for polygons.
 _ROWS = "places", "starts", "meridians", "numbers"
 _RINGS = "places", "rings", "cells", "holes"
+
+
+def require_grid(grid: Any, name: str) -> None:
+    """Reject anything but a grid."""
+    if not isinstance(grid, GridCells):
+        raise DtypeError(f"{name} must be a sphere.Grid, got {type(grid).__name__}")
 
 
 class GridCells(Stored):
@@ -324,7 +331,7 @@ class GridCells(Stored):
             shapes = rings_of.boxes(self._arrays)
         else:
             shapes = rings_of.shapes(self._arrays, self.areas, width)
-        return beside(shapes, data, "EPSG:4326" if crs is None else crs, of="cells")
+        return beside(shapes, data, as_known_crs(crs) or "EPSG:4326", of="cells")
 
     def plot(
         self,

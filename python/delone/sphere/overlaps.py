@@ -8,8 +8,9 @@ from delone._base.arrays import as_choice, as_flag, as_workers
 from delone._tiling.complex import Stored
 from delone.areal.shared import OverlapReport, SharedAreas
 from delone.areal.weights import as_mask
-from delone.errors import DtypeError, InputError
+from delone.errors import InputError
 from delone.sphere.grid import Grid
+from delone.sphere.grid_cells import require_grid
 from delone.sphere.large import overlaps_of
 from delone.sphere.weights import Weights
 
@@ -91,8 +92,7 @@ class Overlaps(SharedAreas[Weights], Stored):
 
     def __init__(self, source: Grid, target: Grid, *, workers: int | None = None) -> None:
         for name, grid in (("source", source), ("target", target)):
-            if not isinstance(grid, Grid):
-                raise DtypeError(f"{name} must be a sphere.Grid, got {type(grid).__name__}")
+            require_grid(grid, name)
         found = overlaps_of(target._made, source._made, as_workers(workers))
         self._fill(
             (found.indptr, found.indices, found.areas),

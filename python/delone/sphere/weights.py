@@ -11,6 +11,7 @@ from delone._base.numbers import as_positive
 from delone.areal.paired import added
 from delone.areal.weights import AreaWeights, as_mask
 from delone.errors import InputError
+from delone.sphere.grid_cells import require_grid
 from delone.sphere.pointwise import POINTWISE, pointwise, refuse_neighbors
 
 if TYPE_CHECKING:
@@ -186,6 +187,8 @@ class Weights(AreaWeights):
         nearest [[2.0]]
         binned [[5.0]]
         """
+        require_grid(source, "source")
+        require_grid(target, "target")
         kind = as_choice(method, POINTWISE, name="method")
         beyond = as_choice(extrapolate, ("nan", "nearest"), name="extrapolate")
         exponent = as_positive(power, name="power", finite=True)
@@ -336,6 +339,8 @@ class Weights(AreaWeights):
         """Reject a source or target whose number of cells is not that of the weights."""
         counts = len(self.source_fractions), len(self.fractions)
         for name, grid, count in zip(("source", "target"), grids, counts, strict=True):
+            if grid is not None:
+                require_grid(grid, name)
             if grid is not None and grid.ncells != count:
                 raise InputError(f"{name} has {grid.ncells} cells, but the weights are for {count}")
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._base.arrays import as_workers
-from delone.errors import DirectionError, InputError, ShapeError
+from delone._base.arrays import as_text, as_workers
+from delone.errors import DirectionError, DtypeError, InputError, ShapeError
 from delone.interpolate.places import is_angle
 from delone.sphere.boxes import as_boxes
 from delone.sphere.coordinates import units_of
@@ -39,7 +39,7 @@ _INFER = "give infer_bounds=True to place them halfway between centers"
 def centers(variables: Variables, choices: Choices) -> Pair | None:
     """Return the names of the longitude and the latitude; None if there are none."""
     if choices.coords is not None:
-        a, b = choices.coords
+        a, b = _pair(choices.coords)
         for name in (a, b):
             if name not in variables:
                 raise InputError(f"the dataset has no variable {name!r:.60}, as coords= says")
@@ -67,6 +67,14 @@ def centers(variables: Variables, choices: Choices) -> Pair | None:
     if all(known):
         return known[0][0], known[1][0]
     return next(((a, b) for a, b in _NAMES if {a, b} <= set(usable)), None)
+
+
+def _pair(names: Any) -> Pair:
+    """Return two names of variables."""
+    if not isinstance(names, list | tuple) or len(names) != 2:
+        raise DtypeError(f"coords must be two names of variables, got {names!r:.60}")
+    a, b = (as_text(name, name="coords") for name in names)
+    return a, b
 
 
 def read_bounds(variables: Variables, choices: Choices) -> Cells:
