@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import importlib.util
 import pickle
+import shutil
+import subprocess
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -252,6 +254,40 @@ def test_uxarray_regrids_fields_on_its_grids(tmp_path: Path) -> None:
     field = uxarray.UxDataArray(array, uxgrid=grids[0])
     found = field.remap.apply_weights(grids[1], tmp_path / "map.nc")
     assert np.allclose(found.values, weights.apply(array.values), rtol=1e-13)
+
+
+@pytest.mark.parametrize("form", ["NETCDF4", "NETCDF3_64BIT_DATA"])
+@pytest.mark.parametrize(
+    ("source", "target", "dims"),
+    [(MESH, ROWS, ("lat", "lon")), (MESH, REGION, ("lat", "lon")), (ROWS, MESH, ("ncol",))],
+    ids=["rows", "region", "mesh"],
+)
+def test_nco_applies_maps(
+    tmp_path: Path, source: Grid, target: Grid, dims: tuple[str, ...], form: str
+) -> None:
+    ncks = shutil.which("ncks")
+    if ncks is None:
+        pytest.skip("could not find the program ncks")
+    weights = Overlaps(source, target).to_weights("conservative")
+    weights.to_netcdf(tmp_path / "map.nc", source=source, target=target, format=form)
+    with netcdf.Dataset(tmp_path / "in.nc", "w") as file:
+        names = ("lat", "lon") if len(source.grid_shape) == 2 else ("ncol",)
+        for name, size in zip(names, source.grid_shape, strict=True):
+            file.createDimension(name, size)
+        file.createVariable("t", "f8", names)[:] = field_on(source).reshape(source.grid_shape)
+    files = f"--map={tmp_path / 'map.nc'}", str(tmp_path / "in.nc"), str(tmp_path / "out.nc")
+    subprocess.run([ncks, "-O", *files], check=True, capture_output=True)
+    with netcdf.Dataset(tmp_path / "out.nc") as file:
+        assert file["t"].dimensions == dims
+        found = np.asarray(file["t"][:])
+        assert np.allclose(found, weights.apply(field_on(source)), rtol=1e-14)
+        lat = np.asarray(file["lat"][:])
+        lon = np.asarray(file["lon"][:])
+    if dims == ("lat", "lon"):
+        lon, lat = (part.ravel() for part in np.meshgrid(lon, lat))
+    off = np.abs(np.column_stack((lon, lat)) - target.centers_lonlat)
+    assert np.minimum(off[:, 0], 360 - off[:, 0]).max() < 1e-9
+    assert off[:, 1].max() < 1e-9
 
 
 @pytest.mark.parametrize("target", [ROWS, REGION, MESH])
