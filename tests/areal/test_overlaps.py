@@ -245,3 +245,25 @@ def test_methods_that_are_not_a_mapping(methods: Any) -> None:
     square = [[(0, 0), (1, 0), (1, 1), (0, 1)]]
     with pytest.raises(delone.DtypeError, match="methods must map columns to methods"):
         Overlaps(square, square).transfer({"a": [1]}, methods)
+
+
+def test_a_closed_line_is_not_a_polygon() -> None:
+    shapely = pytest.importorskip("shapely")
+    ring = shapely.LinearRing([(0, 0), (1, 0), (1, 1)])
+    with pytest.raises(delone.InputError, match=r"^source: geometry 1 is not a polygon"):
+        Overlaps([shapely.box(0, 0, 1, 1), ring], [shapely.box(0, 0, 1, 1)])
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_large_coordinates_of_any_sign_and_axis_are_refused(sign: int, axis: int) -> None:
+    square = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], dtype=np.float64)
+    square[2, axis] = sign * 2.0**501
+    with pytest.raises(delone.InputError, match="beyond the range of doubles"):
+        Overlaps([square], [square])
+
+
+def test_a_layer_may_be_flat() -> None:
+    flat = np.array([(0, 0), (1, 0), (1, 2.0**-510), (0, 2.0**-510)])
+    for layer in (flat, flat[:, ::-1]):
+        assert Overlaps([layer], [layer]).report.source_empty.tolist() == [0]
