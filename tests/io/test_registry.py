@@ -13,6 +13,7 @@ from delone import (
     FileFormatError,
     InputError,
     MissingExtraError,
+    OutputError,
     PeriodicDelaunay,
     RegularTriangulation,
     ShapeError,
@@ -261,3 +262,16 @@ def test_attributes_that_fit_nothing_are_refused(tmp_path, suffix, attributes, e
 def test_meshes_hold_numbers(tmp_path, suffix):
     with pytest.raises(DtypeError, match="real numbers"):
         write_mesh(tmp_path / f"a{suffix}", MESH, attributes={"a": ["x"] * 5})
+
+
+@pytest.mark.parametrize("error", [FileFormatError, OutputError, RuntimeError])
+def test_temporary_names_are_in_no_message(tmp_path, error):
+    target = tmp_path / "heights.tif"
+    for form in (str, lambda path: path.name):
+        with (
+            pytest.raises((FileFormatError, OutputError, RuntimeError)) as caught,
+            replacing(target) as file,
+        ):
+            raise error(f"{form(file)} is too large")
+        own = error is not RuntimeError  # an error of Python itself is a bug, and stays as it is
+        assert ("heights.tif is too large" in str(caught.value)) is own

@@ -85,6 +85,8 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     except Exception as error:
         refusal = _refusal(error, temporary, str(path))
         if refusal is None:
+            if isinstance(error, DeloneError):
+                error.args = (_named(str(error), temporary, str(path)), *error.args[1:])
             raise
         raise refusal from error
     finally:
@@ -114,7 +116,7 @@ def _refusal(error: Exception, temporary: Path, path: str) -> OutputError | None
     if isinstance(error, DeloneError) and not isinstance(error, OutputError):
         return None
     if isinstance(error, OutputError) and error.errno is None:
-        message = str(error).replace(str(temporary), path)
+        message = _named(str(error), temporary, path)
         return None if message == str(error) else OutputError(message)
     number = _number_of_full(error, temporary)
     if number is not None:
@@ -126,7 +128,12 @@ def _refusal(error: Exception, temporary: Path, path: str) -> OutputError | None
     elif type(error).__module__.partition(".")[0] in {"builtins", "numpy", "delone"}:
         return None
     reason = str(error).partition("\n")[0] or type(error).__name__
-    return OutputError(f"{path} cannot be written: {reason.replace(str(temporary), path)}")
+    return OutputError(f"{path} cannot be written: {_named(reason, temporary, path)}")
+
+
+def _named(message: str, temporary: Path, path: str) -> str:
+    """Return a message with the name of the target, with its folder or without."""
+    return message.replace(str(temporary), path).replace(temporary.name, Path(path).name)
 
 
 def _number_of_full(error: BaseException, temporary: Path) -> int | None:
