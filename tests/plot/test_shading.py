@@ -84,3 +84,18 @@ def test_light_comes_from_the_north_west():
     mesh = Delaunay(datasets.uniform(50))
     assert (facet_light(mesh.points, mesh.points @ [1.0, -1.0], mesh.simplices) > 0.95).all()
     assert (facet_light(mesh.points, mesh.points @ [-1.0, 1.0], mesh.simplices) < 0.3).all()
+
+
+@pytest.mark.parametrize("power", [0, 400, 600, 1000, 1023])
+def test_huge_heights_have_the_same_relief(power: int) -> None:
+    """No warning, either: pytest raises those of NumPy."""
+    heights = np.random.default_rng(3).uniform(-1, 1, (12, 12))
+    frame = (1.0, (0, 12, 0, 12))
+    with np.errstate(over="raise"):
+        found = relief(Raster(heights * 2.0**power, *frame))
+    np.testing.assert_array_equal(found, relief(Raster(heights, *frame)))
+    points = np.array([(0.0, 0), (1, 0), (1, 1), (0, 1)])
+    corners, z = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32), np.array([0.5, -0.9, 0.2, 0.9])
+    with np.errstate(over="raise"):
+        light = facet_light(points, z * 2.0**power, corners)
+    np.testing.assert_array_equal(light, facet_light(points, z, corners))

@@ -30,6 +30,8 @@ _CROWDED = 0.5
 _SUN = np.array([-0.5, 0.5, 0.7071067811865476])
 # The steepest tenth of a surface is drawn with at least this slope.
 _STEEP = 1.2
+# Heights beyond this are divided by it; their differences could exceed the largest double.
+_HUGE = 2.0**512
 
 
 class Raster(NamedTuple):
@@ -87,7 +89,7 @@ def relief(raster: Raster) -> Floats:
     """
     if min(raster.values.shape) < 2:
         return np.full(raster.values.shape, _SUN[2])
-    north, east = np.array(np.gradient(raster.values, raster.cell))
+    north, east = np.array(np.gradient(_in_range(raster.values), raster.cell))
     # Next to the hull, one side of the difference is missing, so it is drawn flat.
     inside = np.isfinite(raster.values)
     return _light(np.nan_to_num(-east), np.nan_to_num(-north), inside)
@@ -95,6 +97,7 @@ def relief(raster: Raster) -> Floats:
 
 def facet_light(points: Floats, z: Floats, simplices: NDArray[np.int32]) -> Floats:
     """Return how bright the sun makes each triangle, (m,), like `relief` for pixels."""
+    z = _in_range(z)
     a, b, c = (points[simplices[:, k]] for k in range(3))
     (ux, uy), (vx, vy) = (b - a).T, (c - a).T
     uz, vz = z[simplices[:, 1]] - z[simplices[:, 0]], z[simplices[:, 2]] - z[simplices[:, 0]]
@@ -105,9 +108,16 @@ def facet_light(points: Floats, z: Floats, simplices: NDArray[np.int32]) -> Floa
     return _light(np.nan_to_num(-east), np.nan_to_num(-north), inside)
 
 
+def _in_range(heights: Floats) -> Floats:
+    """Return heights whose differences do not overflow; only their ratios matter here."""
+    largest = np.abs(heights[np.isfinite(heights)]).max(initial=0.0)
+    return heights if largest < _HUGE else heights / _HUGE
+
+
 def _light(x: Floats, y: Floats, inside: NDArray[np.bool_]) -> Floats:
     """Return the cosine between the sun and the normals (x, y, 1), exaggerated, not below 0."""
-    slope = np.hypot(x, y)
+    with np.errstate(over="ignore"):
+        slope = np.hypot(x, y)
     steep = float(np.quantile(slope[inside], 0.9)) if inside.any() else 0.0
     if steep == 0.0:
         steep = float(slope.max(initial=0.0))
