@@ -480,7 +480,7 @@ class ConvexHull(Complex):
         shapely = require("shapely", extra="geo", what="a polygon")
         return shapely.Polygon(self._points[self._vertices])
 
-    @only(2, "write the surface with `to_meshio` or delone.io.write_mesh")
+    @only(2, "write the surface with `to_meshio` or delone.io.write_mesh", beyond="use `save`")
     def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
         """Convert to a table with one polygon (extra ``geo``); 2-D only.
 

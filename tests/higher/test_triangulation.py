@@ -215,6 +215,16 @@ def test_what_needs_a_plane_or_space_does_not_exist(name: str) -> None:
     assert hasattr(Delaunay(some(4, 7)[:, :2]), name)
 
 
+def test_advice_is_about_the_dimension() -> None:
+    hull = delone.ConvexHull(some(5, 5))
+    with pytest.raises(AttributeError, match="only available in 2-D: use `save`"):
+        hull.to_geopandas()
+    with pytest.raises(AttributeError, match="only available in 2-D: write the surface with"):
+        delone.ConvexHull(some(5, 3)).to_geopandas()
+    with pytest.raises(delone.DegenerateInputError, match="at least 8 that span all dimensions"):
+        Delaunay(some(4, 7)[:3])
+
+
 def test_bad_points_are_refused_by_rows() -> None:
     points = some(6, 8)
     with pytest.raises(delone.ShapeError, match="with d from 2 to 8, got \\(24, 9\\)"):

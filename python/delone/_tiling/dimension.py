@@ -61,6 +61,8 @@ F = TypeVar("F", bound="Callable[..., Any]")
 
 # Dimensions that are not listed individually.
 _MANY = 3
+# The number of dimensions beyond which other libraries have no cells.
+_SPACE = 3
 # Dimensions with plots, mesh files and measures of shape.
 FLAT_OR_SOLID = (2, 3)
 
@@ -70,15 +72,17 @@ def absent(*_: Any) -> Any:
     raise NotImplementedError
 
 
-def only(ndim: int | tuple[int, ...], instead: str) -> Callable[[F], F]:
+def only(
+    ndim: int | tuple[int, ...], instead: str, *, beyond: str | None = None
+) -> Callable[[F], F]:
     """Restrict a method, or the getter of a property, to instances of one or several dimensions.
 
     In other dimensions, the attribute does not exist, not even for ``hasattr``; the error says what
-    to use `instead`.
+    to use `instead`, and in more than three dimensions what to use `beyond` these.
     """
 
     def decorate(method: F) -> F:
-        found: Any = _Only(method, (ndim,) if isinstance(ndim, int) else ndim, instead)
+        found: Any = _Only(method, (ndim,) if isinstance(ndim, int) else ndim, instead, beyond)
         return found  # type: ignore[no-any-return]
 
     return decorate
@@ -87,9 +91,11 @@ def only(ndim: int | tuple[int, ...], instead: str) -> Callable[[F], F]:
 class _Only:
     """A method that instances of other dimensions do not have."""
 
-    def __init__(self, method: Callable[..., Any], ndim: tuple[int, ...], instead: str) -> None:
+    def __init__(
+        self, method: Callable[..., Any], ndim: tuple[int, ...], instead: str, beyond: str | None
+    ) -> None:
         functools.update_wrapper(self, method)
-        self._method, self._ndim, self._instead = method, ndim, instead
+        self._method, self._ndim, self._instead, self._beyond = method, ndim, instead, beyond
 
     def __get__(self, owner: Any, kind: type | None = None) -> Any:
         if owner is None:
@@ -108,5 +114,7 @@ class _Only:
             name = self._method.__name__
             where = " and ".join(f"{d}-D" for d in self._ndim[:2])
             where = where if len(self._ndim) < _MANY else f"{self._ndim[0]}-D and more dimensions"
-            message = f"{name} is only available in {where}: {self._instead}"
+            far = self._beyond is not None and owner.ndim > _SPACE
+            message = f"{name} is only available in {where}: "
+            message += str(self._beyond if far else self._instead)
             raise AttributeError(message, name=name, obj=owner)

@@ -269,7 +269,7 @@ fn opposite(rows: &[u32], count: usize) -> String {
 fn flat(dimension: usize, distinct: usize, rows: &[u32]) -> String {
     if distinct <= dimension {
         return format!(
-            "{} too few for a simplex in {dimension}-D: at least {} that are not in one flat are needed",
+            "{} too few for a simplex in {dimension}-D: at least {} that span all dimensions are needed",
             agreed(distinct, "distinct point is", "distinct points are"),
             dimension + 1
         );
