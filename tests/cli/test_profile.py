@@ -121,3 +121,17 @@ def test_chords_of_alignments(survey, command, tmp_path):
         counts.append(json.loads(out)["length"])
     assert counts[0] < counts[1]
     assert command("contours", survey, "--interval", "9", "--chord", "1")[0] == 2
+
+
+def test_lines_outside_are_named(tmp_path, command):
+    survey = tmp_path / "a.csv"
+    survey.write_text("x,y,z\n0,0,1\n1,0,1\n0,1,1\n1,1,3\n")
+    for name, coordinates in (("far", [[5, 5], [6, 6]]), ("near", [[-1, 0.5], [2, 0.5]])):
+        line = {"type": "LineString", "coordinates": coordinates}
+        (tmp_path / f"{name}.geojson").write_text(json.dumps(line))
+    words = "the line is outside the surface: the profile has no points"
+    for name, said in (("far", True), ("near", False)):
+        line = tmp_path / f"{name}.geojson"
+        assert (words in command("profile", survey, line)[2]) is said
+        options = ("--profile", line, "-o", tmp_path / f"site-{name}")
+        assert (words in command("terrain", survey, *options)[2]) is said

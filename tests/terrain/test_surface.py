@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from fractions import Fraction
 
 import numpy as np
@@ -57,7 +58,7 @@ def test_duplicates_with_different_heights(policy, z):
     points = [*SQUARE, (2, 1, 1), (2, 1, 4), (2, 1, 1)]
     with pytest.raises(ConflictingValuesError, match=r"points .*\(2, 1\): 1 to 4") as caught:
         TIN.from_points(points)
-    assert caught.value.rows.tolist() == [[4, 4]]
+    assert caught.value.rows.tolist() == [[5, 4]]
     tin = TIN.from_points(points, duplicates=policy)
     assert tin.npoints == 5 and tin.heights((2, 1)) == z
 
@@ -328,3 +329,12 @@ def test_points_outside_of_the_boundary_do_not_count():
     assert grid.extent == (5, 25, 5, 95)
     assert np.isfinite(grid.values).all()
     assert {tin.bands(interval=0.25).low.min(), tin.bands(interval=0.25).high.max()} == {low, high}
+
+
+def test_a_line_outside_has_an_empty_profile_and_says_so():
+    tin = TIN.from_points(SQUARE)
+    with pytest.warns(UserWarning, match="outside the surface: the profile has no points"):
+        assert len(tin.profile([(50, 50), (60, 60)])) == 0
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert len(tin.profile([(-1, -1), (60, 60)]))

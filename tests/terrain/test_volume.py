@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from delone import InputError
+from delone import InputError, LimitError
 from delone.terrain import TIN
 
 
@@ -206,3 +206,28 @@ def test_other_systems_and_values_are_refused():
     for wrong in (np.nan, (1, 2), (1, 2, np.inf)):
         with pytest.raises(InputError, match="other must be"):
             meters.volume_to(wrong)
+
+
+@pytest.mark.parametrize("size", [1e150, 1e200, 1e300])
+def test_volumes_beyond_doubles_are_refused(size: float) -> None:
+    """Otherwise cut and fill would be infinite, and their difference NaN."""
+    points = np.random.default_rng(5).random((30, 3)) * size
+    tin = TIN.from_points(points)
+    shift = np.random.default_rng(6).uniform(-size, size, 30) / 2
+    others = TIN.from_points(points + np.column_stack((0 * shift, 0 * shift, shift)))
+    for other in (size / 2, (0.1, 0.0, size / 2), others):
+        with pytest.raises(LimitError, match="give coordinates in a larger unit"):
+            tin.volume_to(other)
+    with pytest.raises(LimitError, match="larger unit"):
+        tin.volumes_to(size / 2, [[(0, 0), (size, 0), (size, size), (0, size)]])
+
+
+def test_one_infinite_volume_has_a_net() -> None:
+    found = TIN.from_points([(0, 0, 0), (9, 0, 0), (0, 9, 3)]).volume_to(1e308)
+    assert (found.cut, found.fill, found.net) == (0, np.inf, np.inf)
+
+
+def test_large_volumes_are_finite() -> None:
+    points = np.random.default_rng(5).random((30, 3)) * 1e102
+    found = TIN.from_points(points).volume_to(5e101)
+    assert np.isfinite([found.cut, found.fill, found.net]).all() and found.cut > 1e304

@@ -182,4 +182,6 @@ def profile_figures(found: Found) -> dict[str, Any]:
         length = float(found.stations[-1] - found.stations[0])
         counts = {"stations": len(found), "stations_without_heights": without or None}
         return {"length": length, **counts, **heights}
-    return {"length": float(found.distances[-1]) if len(found) else 0.0, **heights}
+    length = float(found.distances[-1]) if len(found) else 0.0
+    gaps = int(np.isnan(z).sum()) if z.ndim == 1 and not hasattr(found, "names") else 0
+    return {"length": length, **heights, "gaps": gaps or None}

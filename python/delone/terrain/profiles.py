@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -11,6 +12,7 @@ import numpy as np
 from delone import _core
 from delone._base.arrays import as_number
 from delone._base.extras import require
+from delone._base.georeference import caller_level
 from delone._base.immutable import ReadOnly
 from delone._base.renames import renamed
 from delone._tiling import measures
@@ -155,6 +157,17 @@ def profile(tin: Surface, line: Any) -> Profile:
     again[1:] &= (table[1:, 1] == table[:-1, 1]) & ~np.isnan(table[1:, 1])
     table = table[~again]
     return Profile(distances=table[:, 0].copy(), z=table[:, 1].copy(), points=table[:, 2:].copy())
+
+
+def warn_of_no_points(found: Profile) -> Profile:
+    """Warn if a profile is empty because its line is outside the surface; return the profile."""
+    if not len(found):
+        warnings.warn(
+            "the line is outside the surface: the profile has no points",
+            UserWarning,
+            stacklevel=caller_level(),
+        )
+    return found
 
 
 def parts_of(tin: Surface, a: Floats, b: Floats) -> list[_Part]:

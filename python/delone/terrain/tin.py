@@ -530,6 +530,11 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         InputError
             `line` is not one line of at least two points.
 
+        Warns
+        -----
+        UserWarning
+            The line is outside the surface, so the profile has no points.
+
         Examples
         --------
         >>> from delone.terrain import TIN
@@ -538,7 +543,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         >>> found.distances.tolist(), found.z.tolist()
         ([0.0, 1.0, 3.0], [2.0, 4.0, 8.0])
         """
-        return profiles.profile(self, line)
+        return profiles.warn_of_no_points(profiles.profile(self, line))
 
     def drape(self, geometry: Any) -> Any:
         """Drape a geometry over the surface (extra ``geo``).
@@ -627,6 +632,8 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         InputError
             The surfaces are in different reference systems, or their heights in different units;
             `other` is none of these; or `region` has points or open lines.
+        LimitError
+            Areas exceed the largest double, or both volumes do.
 
         Warns
         -----

@@ -14,7 +14,7 @@ from delone._base.georeference import caller_level, same_crs
 from delone._base.immutable import ReadOnly, sealed
 from delone._base.units import area_units, require_same_units, volume_units
 from delone._tiling.plane.geometry import total
-from delone.errors import InputError
+from delone.errors import InputError, LimitError
 from delone.terrain.extent import inside_of_rings
 from delone.terrain.lines import require_areas, rings_of
 
@@ -29,6 +29,7 @@ __all__ = [
     "goal_of",
     "plane_of",
     "region_of",
+    "require_net",
     "volume",
     "wanted_region",
     "warn_of_nothing",
@@ -122,6 +123,7 @@ def volume(tin: Surface, other: Any, region: Any) -> Volume:
         warn_of_nothing(region)
     # Correctly rounded sums: independent of the order of the triangles.
     cut, fill, cut_area, fill_area, area = map(total, found)
+    require_net(np.array(cut), np.array(fill))
     return Volume(
         cut=cut,
         fill=fill,
@@ -152,11 +154,35 @@ def require_same_crs(one: str | None, other: str | None) -> None:
 
 def goal_of(tin: Surface, other: Any) -> tuple[Sheet | None, list[float]]:
     """Return the surface to reach, or None and a plane."""
+    if hasattr(tin, "_sheet"):
+        _require_area(tin._sheet().points)
     if not hasattr(other, "_sheet"):
         return None, plane_of(other)
     require_same_crs(tin.crs, other.crs)
     require_same_units(tin.units, other.units, what="the surfaces")
-    return other._sheet(), [0.0, 0.0, 0.0]
+    sheet: Sheet = other._sheet()
+    _require_area(sheet.points)
+    return sheet, [0.0, 0.0, 0.0]
+
+
+def _require_area(points: Floats) -> None:
+    """Reject surfaces whose areas may exceed the largest double: nothing else would be right."""
+    with np.errstate(over="ignore"):
+        area = (points.max(axis=0) - points.min(axis=0)).prod()
+    if not np.isfinite(area):
+        raise _too_large("areas")
+
+
+def require_net(cut: Floats, fill: Floats) -> None:
+    """Reject volumes that are both beyond doubles: their difference would be NaN."""
+    if (np.isinf(cut) & np.isinf(fill)).any():
+        raise _too_large("volumes")
+
+
+def _too_large(what: str) -> LimitError:
+    return LimitError(
+        f"{what} of this surface exceed the largest double: give coordinates in a larger unit"
+    )
 
 
 def plane_of(other: Any) -> list[float]:

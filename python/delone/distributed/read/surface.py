@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from delone.distributed.read import contours, simplifying, volumes
 from delone.distributed.read.folder import TileFolder
 from delone.terrain.contouring import MOST, Finish
+from delone.terrain.profiles import warn_of_no_points
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -175,7 +176,7 @@ class TiledSurface(TileFolder):
         ...     tin.profile([(0, 0.5), (19, 0.5)]).z[[0, -1]].tolist()
         [0.5, 19.5]
         """
-        return volumes.profile(self, line, values)
+        return warn_of_no_points(volumes.profile(self, line, values))
 
     def volume_to(
         self,

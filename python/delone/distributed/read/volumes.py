@@ -16,7 +16,14 @@ from delone.distributed.read.tasks import mapped
 from delone.predicates import orient2d
 from delone.terrain.lines import line_of
 from delone.terrain.profiles import Profile
-from delone.terrain.volumes import Volume, goal_of, require_same_crs, wanted_region, warn_of_nothing
+from delone.terrain.volumes import (
+    Volume,
+    goal_of,
+    require_net,
+    require_same_crs,
+    wanted_region,
+    warn_of_nothing,
+)
 
 if TYPE_CHECKING:
     from delone._base.types import Bools, Floats
@@ -54,6 +61,7 @@ def volume(tin: TileFolder, other: Any, region: Any, value: str, executor: Any) 
     if not of_tiles[:, 4].any():
         warn_of_nothing(region)
     cut, fill, cut_area, fill_area, area = map(summed, parts)
+    require_net(np.array(cut), np.array(fill))
     return Volume(
         cut=cut,
         fill=fill,
