@@ -135,3 +135,14 @@ def test_tiles_of_degrees(tmp_path, degrees, command):
     assert code == 0 and "longitudes and latitudes (EPSG:4326)" in err
     again = command("tile", degrees, "-o", tmp_path / "b", "--crs", "EPSG:4326", "--planar")
     assert again[::2] == (0, "")
+
+
+def test_degrees_beyond_a_pole_are_refused(tmp_path, command):
+    file = tmp_path / "a.csv"
+    file.write_text("x,y,z\n10,89,0\n11,90,1\n10,90.5,2\n12,-91,0\n")
+    for more in ((), ("--planar",)):
+        options = ("--interval", 1, "--crs", "EPSG:4326", *more)
+        code, _, err = command("contours", file, *options)
+        assert code == 4 and f"--crs EPSG:4326 is for degrees, longitudes first, and {file}" in err
+        assert "(10, 90.5)" in err and err.count("\n") == 1
+    assert command("contours", file, "--interval", 1, "--crs", "EPSG:28992")[0] == 0

@@ -29,6 +29,7 @@ __all__ = [
     "as_crs",
     "as_degrees",
     "as_known_crs",
+    "beyond_degrees",
     "caller_level",
     "column_words",
     "common_crs",
@@ -296,9 +297,14 @@ def warn_of_degrees(
 
 def may_be_degrees(coordinates: NDArray[np.float64]) -> bool:
     """Return whether all finite coordinates, longitudes first, are in the range of degrees."""
+    return not bool(beyond_degrees(coordinates).any())
+
+
+def beyond_degrees(coordinates: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return which rows of finite coordinates are not in the range of degrees."""
     with np.errstate(invalid="ignore"):
         far = (np.abs(coordinates[:, 0]) > _WIDEST) | (np.abs(coordinates[:, 1]) > _HIGHEST)
-    return not bool((far & np.isfinite(coordinates).all(axis=1)).any())
+    return np.asarray(far & np.isfinite(coordinates).all(axis=1))
 
 
 def message_of_degrees(what: str, by: str) -> str:

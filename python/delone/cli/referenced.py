@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 import typer
 
 from delone._base.georeference import (
+    beyond_degrees,
     degrees_in,
     is_known,
     may_be_degrees,
@@ -73,10 +74,23 @@ def referenced(
             note(left_out(path, crs, known), quiet=quiet)
         survey = replace(survey, crs=crs)
     by = degrees_in(survey)
-    if by is not None and not planar:
+    if by is not None and (crs is not None or not planar):
         found = survey.all_points() if isinstance(survey, GeometrySet) else survey
-        note_degrees(survey.source, by, found.points, quiet=quiet)
+        if crs is not None:
+            _refuse_beyond_poles(survey.source, crs, found.points)
+        note_degrees(survey.source, None if planar else by, found.points, quiet=quiet)
     return survey
+
+
+def _refuse_beyond_poles(source: str, crs: str, coordinates: NDArray[np.float64]) -> None:
+    """Reject a --crs in degrees for coordinates that are not; files may declare one by mistake."""
+    if may_be_degrees(coordinates):
+        return
+    x, y = coordinates[beyond_degrees(coordinates)][0].tolist()
+    raise Failure(
+        f"--crs {crs} is for degrees, longitudes first, and {source} contains ({x:.10g}, {y:.10g})",
+        Exit.DEGENERATE,
+    )
 
 
 def note_degrees(
