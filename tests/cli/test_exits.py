@@ -329,6 +329,56 @@ def test_rows_of_text_have_lines(tmp_path, monkeypatch, command, case):
     assert words in err and err.count("\n") == 1
 
 
+def test_heights_that_differ_have_the_lines_of_both(tmp_path, monkeypatch, command):
+    monkeypatch.chdir(tmp_path)
+    Path("a.csv").write_text("x,y,z\n0,0,1\n1,0,1\n0,1,1\n1,0,7\n1,0,3\n1,1,1\n")
+    code, _, err = command("contours", "a.csv", "--interval", 1)
+    assert code == 4 and "give --tolerance, the largest" in err
+    assert err.strip().endswith("; lines 5, 3 of a.csv")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("contours", "--interval", "1", "--workers", "0"), "--workers must be an integer of at"),
+        (("triangulate", "--workers", "0"), "--workers must be an integer of at least 1, got 0"),
+        (("voronoi", "--workers", "0"), "--workers must be an integer of at least 1, got 0"),
+        (("contours", "--interval", "0"), "--interval must be above 0 and finite, got 0.0"),
+        (("contours", "--interval", "1", "--base", "inf"), "--base must be finite"),
+        (("contours", "--interval", "1", "--max-edge", "0"), "--max-edge must be above 0"),
+        (("contours", "--interval", "1", "--smooth", "6"), "--smooth must be an integer from 0"),
+        (("contours", "--interval", "1", "--smooth", "-1"), "--smooth must be an integer from 0"),
+        (("contours",), "give either --levels or --interval"),
+        (("contours", "--levels", "1,nan"), "--levels takes numbers, got '1,nan'"),
+        (("contours", "--levels", "inf"), "--levels takes numbers, got 'inf'"),
+        (("triangulate", "--method", "x"), "--method must be one of 'auto'"),
+    ],
+)
+def test_errors_name_options(tmp_path, monkeypatch, command, arguments, words):
+    monkeypatch.chdir(tmp_path)
+    Path("a.csv").write_text("x,y,z\n0,0,1\n1,0,1\n0,1,1\n1,1,4\n")
+    code, _, err = command(arguments[0], "a.csv", *arguments[1:])
+    assert code == 2 and err.startswith(f"delone: {words}"), err
+    assert "line " not in err
+
+
+def test_a_run_that_exists_is_resumed_by_an_option(tmp_path, monkeypatch, command):
+    monkeypatch.chdir(tmp_path)
+    Path("a.csv").write_text("x,y\n0,0\n1,0\n0,1\n")
+    assert command("tile", "a.csv", "-o", "tiles", "--workers", "1")[0] == 0
+    code, _, err = command("tile", "a.csv", "-o", "tiles", "--workers", "1", "--no-resume")
+    assert code == 2 and err.strip().endswith("remove it, or use --resume")
+
+
+def test_words_that_are_no_arguments_stay():
+    options = {"index": "--index", "interval": "--interval", "max_edge": "--max-edge"}
+    said = "the index of a.interval is empty; max_edge, interval=2 or index=False"
+    wanted = "the index of a.interval is empty; --max-edge, --interval 2 or --no-index"
+    assert as_options(said, options) == wanted
+    assert as_options("index: 1 is too few", options) == "--index: 1 is too few"
+    assert as_options("interval of two", options) == "interval of two"
+
+
 def test_rows_of_other_files_have_none(tmp_path, command):
     np.save(tmp_path / "a.npy", [(0, 0), (np.nan, 1), (1, 1)])
     code, _, err = command("triangulate", tmp_path / "a.npy")

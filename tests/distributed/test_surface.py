@@ -157,7 +157,7 @@ def test_a_limit_and_wrong_arguments(both: Any) -> None:
         tiles.contours(interval=interval, values="depth")
     with pytest.raises(InputError, match="executor must be"):
         tiles.contours(interval=interval, executor="threads")
-    with pytest.raises(InputError, match="either levels or an interval"):
+    with pytest.raises(InputError, match="either levels= or interval="):
         tiles.contours()
 
 

@@ -208,7 +208,7 @@ def test_too_many_levels_are_refused_before_the_work():
         tin.contours(interval=1e4, max_points=1000)
     # Two edges, of 100,001 levels each.
     assert caught.value.found == 200_000
-    with pytest.raises(InputError, match="either levels or an interval"):
+    with pytest.raises(InputError, match="either levels= or interval="):
         tin.contours()
     with pytest.raises(InputError, match="NaN or infinity"):
         tin.contours([0.0, np.nan])

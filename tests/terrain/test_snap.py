@@ -165,7 +165,7 @@ def test_points_alone():
     assert TIN.from_points([*SQUARE, (5, 5, 0), (5.5, 5, 0)], snap=0.5).npoints == 6
     with pytest.raises(ConflictingValuesError) as caught:
         TIN.from_points([*SQUARE, (5, 5, 1), (5.001, 5, 2)], snap=0.01)
-    assert caught.value.rows.tolist() == [[4, 4]]
+    assert caught.value.rows.tolist() == [[5, 4]]
 
 
 def test_bad_distances():

@@ -16,7 +16,7 @@ import typer
 
 from delone import __version__
 from delone._base.counting import agreed
-from delone.cli.commands import Commands
+from delone.cli.commands import Commands, options_of
 from delone.cli.exits import MEANINGS, Exit, Failure, as_options, code_of, os_message
 from delone.errors import MissingExtraError, NonFiniteError, OutputError
 
@@ -75,10 +75,10 @@ def run(arguments: Sequence[str]) -> int:
         sys.stdout.flush()
         # typer converts Ctrl-C to this code.
         if code == Exit.INTERRUPTED:
-            return _said(KeyboardInterrupt())
+            return _said(KeyboardInterrupt(), arguments)
         return code if isinstance(code, int) else Exit.OK
     except BaseException as error:
-        return _said(error)
+        return _said(error, arguments)
     finally:
         if before is not None:
             signal.signal(signal.SIGTERM, before)
@@ -100,7 +100,7 @@ def _dropped_stdout() -> None:
     sys.stdout = Path(os.devnull).open("w")  # noqa: SIM115
 
 
-def _said(error: BaseException) -> int:
+def _said(error: BaseException, arguments: Sequence[str]) -> int:
     """Report an error and return the exit code."""
     if _is_closed_pipe(error):
         # No message, like a program killed by SIGPIPE.
@@ -123,22 +123,29 @@ def _said(error: BaseException) -> int:
     elif isinstance(error, MemoryError):
         message, code = str(error) or "there is not enough memory", Exit.MEMORY
     else:
-        code = code_of(error)
-        message = os_message(error) if isinstance(error, OutputError) else as_options(str(error))
-        if isinstance(error, NonFiniteError) and not re.search(
-            r"first: \d|infinite: row \d", message
-        ):
-            more = ", ..." if error.count > len(error.rows) else ""
-            noun = agreed(error.count, "row", "rows")
-            message += f" ({noun} {', '.join(map(str, error.rows.tolist()))}{more})"
-        message += "".join(f"; {note}" for note in getattr(error, "__notes__", ()))
-        if code == Exit.INTERNAL:
-            message = f"{type(error).__name__}: {message} (a bug in delone; please report it)"
+        message, code = _explained(error, arguments)
     if message:
         # Standard error may be closed as well.
         with contextlib.suppress(OSError):
             print(f"delone: {' '.join(message.split())}", file=sys.stderr)
     return code
+
+
+def _explained(error: BaseException, arguments: Sequence[str]) -> tuple[str, Exit]:
+    """Return the message and the exit code of an error of the package, or of a bug."""
+    code = code_of(error)
+    if isinstance(error, OutputError):
+        message = os_message(error)
+    else:
+        message = as_options(str(error), options_of(arguments))
+    if isinstance(error, NonFiniteError) and not re.search(r"first: \d|infinite: row \d", message):
+        more = ", ..." if error.count > len(error.rows) else ""
+        noun = agreed(error.count, "row", "rows")
+        message += f" ({noun} {', '.join(map(str, error.rows.tolist()))}{more})"
+    message += "".join(f"; {note}" for note in getattr(error, "__notes__", ()))
+    if code == Exit.INTERNAL:
+        message = f"{type(error).__name__}: {message} (a bug in delone; please report it)"
+    return message, code
 
 
 def _is_closed_pipe(error: BaseException) -> bool:

@@ -13,9 +13,11 @@ import typer
 from typer.core import TyperGroup
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from click import Context, HelpFormatter
 
-__all__ = ["COMMANDS", "TASKS", "Commands"]
+__all__ = ["COMMANDS", "TASKS", "Commands", "options_of"]
 
 _EPILOG = "The table of exit codes is in: delone --help"
 
@@ -208,3 +210,13 @@ def _loaded(name: str) -> Any:
     alone = typer.Typer(add_completion=False, rich_markup_mode=None)
     alone.command(name=name, epilog=_EPILOG)(naming_lines(function) if listed.on_rows else function)
     return typer.main.get_command(alone)
+
+
+def options_of(arguments: Sequence[str]) -> dict[str, str]:
+    """Return the options of the command that is called, by the names of arguments in Python."""
+    name = next((each for each in arguments if each in COMMANDS), None)
+    if name is None:
+        return {}
+    options = [option for each in _loaded(name).params for option in each.opts]
+    long = [option for option in options if option.startswith("--")]
+    return {option[2:].replace("-", "_"): option for option in long}

@@ -30,7 +30,7 @@ from delone.errors import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
 Given = ParamSpec("Given")
 # Number of pairs of rows whose lines are named; for single rows, errors list ten.
@@ -136,18 +136,41 @@ def code_of(error: BaseException) -> Exit:
 
 _ATTRIBUTE = re.compile(r"; `error\.\w+` (?:ha|list|contain)[^;]*")
 _QUOTES = str.maketrans("", "", "'\"")
-_OPTION = re.compile(
-    r"""\b(crossing|duplicates|extrapolate|inside|nan)=((?:["'][\w-]+["'](?:, | or )?)+)"""
-)
+# The value of an argument in a message: texts with "or" between them, a word, or nothing.
+_VALUE = r"""(?:=((?:["'][\w-]+["'](?:, | or )?)+|\w+)?)?"""
+# Arguments that messages mention and that are options of some commands only.
+_ANYWHERE = ("crossing", "duplicates", "extrapolate", "inside", "max_points", "nan")
 
 
-def as_options(message: str) -> str:
+def as_options(message: str, options: Mapping[str, str] | None = None) -> str:
     """Rewrite Python arguments in a message as options: ``nan='drop'`` as ``--nan drop``.
 
-    The parts that attributes of the exception contain are left out.
+    `options` has the option of each argument: ``max_edge`` is ``--max-edge``. An argument is a word
+    with an equals sign or an underscore, or the first word of what is wrong with it. The parts that
+    attributes of the exception contain are left out.
     """
-    plain = _ATTRIBUTE.sub("", message).replace("max_points", "--max-points")
-    return _OPTION.sub(lambda found: f"--{found[1]} {found[2].translate(_QUOTES)}", plain)
+    known = {name: f"--{name.replace('_', '-')}" for name in _ANYWHERE} | dict(options or {})
+    names = "|".join(sorted(map(re.escape, known), key=len, reverse=True))
+    plain = _ATTRIBUTE.sub("", message)
+    plain = re.sub(rf"(?<![\w.-])({names}){_VALUE}", lambda found: _option(found, known), plain)
+    return re.sub(r"(--[\w-]+ must be )None \([^)]*\) or ", r"\1", plain)
+
+
+def _option(found: re.Match[str], known: Mapping[str, str]) -> str:
+    """Return the option for an argument, or the text itself if it is an ordinary word."""
+    name, value = found[1], found[2]
+    option = known[name]
+    rest = found.string[found.end() :]
+    if "=" in found[0]:
+        if value == "False":
+            return option.replace("--", "--no-", 1)
+        return option if value in (None, "True") else f"{option} {value.translate(_QUOTES)}"
+    before = found.string[: found.start()]
+    starts = not before or before.endswith((": ", "; "))
+    whole = not re.match(r"\w", rest)
+    if whole and ("_" in name or (starts and re.match(r" must |: ", rest))):
+        return option
+    return found[0]
 
 
 def os_message(error: OSError) -> str:

@@ -42,7 +42,8 @@ def naming_lines(command: Callable[Given, None]) -> Callable[Given, None]:
         except (NonFiniteError, ConflictingValuesError, DirectionError) as error:
             given = kwargs.get("source", kwargs.get("sources"))
             files = given if isinstance(given, list | tuple) else [given]
-            rows = np.ravel(error.rows[:_FIRST]).tolist()
+            # Each once: a row may be in several pairs.
+            rows = list(dict.fromkeys(np.ravel(error.rows[:_FIRST]).tolist()))
             if rows and len(files) == 1 and isinstance(files[0], str | Path) and is_text(files[0]):
                 # The message is also correct without lines.
                 with suppress(FileFormatError, OSError):

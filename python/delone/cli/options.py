@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -101,11 +102,14 @@ def split(text: str | None) -> list[str] | None:
 
 
 def numbers(text: str, option: str, kind: type = float) -> list[Any]:
-    """Return the numbers between commas."""
+    """Return the finite numbers between commas."""
     try:
-        return [kind(part) for part in text.split(",")]
+        found = [kind(part) for part in text.split(",")]
     except ValueError:
-        raise Failure(f"{option} takes numbers, got {text!r:.80}", Exit.USAGE) from None
+        found = [math.nan]
+    if not all(map(math.isfinite, found)):
+        raise Failure(f"{option} takes numbers, got {text!r:.80}", Exit.USAGE)
+    return found
 
 
 def space_or_plane(solid: bool, flat: bool) -> bool | None:

@@ -10,6 +10,7 @@ import numpy as np
 import typer
 
 from delone import Voronoi, __version__
+from delone._base.arrays import as_workers
 from delone._base.atomic import replacing
 from delone._base.extras import require
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
@@ -171,6 +172,7 @@ def _diagram(
     workers: int | None,
 ) -> Voronoi:
     heavy = None if weights is None else sites.attributes[weights]
+    as_workers(workers)  # all other errors are about the outline
     try:
         return Voronoi(sites.points, clip=outline, fix=fix, weights=heavy, workers=workers)
     except (DegenerateInputError, NonFiniteError):

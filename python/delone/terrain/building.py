@@ -211,7 +211,7 @@ def _without_lines(
     points, simplices = mesh.points, mesh.simplices
     if len(rows):
         several = np.unique(np.concatenate((first[rows], rows)))
-        claims = claims_of_points(first[several], z[several])
+        claims = claims_of_points(first[several], z[several], several)
         nothing = claims.among(np.zeros(len(several), dtype=bool))
         found = resolved(points, claims, nothing, **policies)
         z[first[rows]] = found[first[rows]]
@@ -261,7 +261,8 @@ def _heights(mesh: ConstrainedDelaunay, points: Floats, lines: Lines, **policies
     """Return the height of each row of a triangulation of points and lines."""
     count = len(points)
     z = np.concatenate((points[:, 2], lines.points[:, 2]))
-    own = claims_of_points(mesh.duplicate_of[count : len(z)], lines.points[:, 2])
+    rows = np.arange(count, len(z))
+    own = claims_of_points(mesh.duplicate_of[rows], lines.points[:, 2], rows)
     between, row = claims_of_lines(mesh, z)
     # A segment between two points on the ground has no height of its own.
     without: Bools = np.all(lines.draped[lines.segments[row]], axis=1)

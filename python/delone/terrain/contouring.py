@@ -14,7 +14,7 @@ from delone import _core
 from delone._base.arrays import (
     LARGEST_LIMIT,
     as_count,
-    as_number,
+    as_index,
     as_plain_array,
     as_workers,
     require_finite,
@@ -23,7 +23,7 @@ from delone._base.counting import counted
 from delone._base.decimals import exact, multiples
 from delone._base.extras import require
 from delone._base.immutable import ReadOnly, sealed
-from delone._base.numbers import as_nonnegative
+from delone._base.numbers import as_finite, as_nonnegative, as_positive
 from delone._base.renames import renamed
 from delone._base.values import require_real
 from delone._tiling.complex import Filed
@@ -58,7 +58,7 @@ __all__ = [
 
 # Points of contours that a call may compute by default: about 3 GB, including working memory.
 MOST = 50_000_000
-# The maximum number of smoothing rounds; `smoothing` rejects more.
+# The maximum number of smoothing rounds.
 _MOST_ROUNDS = 5
 # The arrays of lines and of areas in files.
 _LINES = ("points", "starts", "level", "index", "levels")
@@ -525,7 +525,7 @@ def levels_of(
     returns.
     """
     if (levels is None) == (interval is None):
-        raise InputError("give either levels or an interval")
+        raise InputError("give either levels= or interval=")
     if interval is None:
         given = as_plain_array(levels, "levels")
         require_real(given, "levels")
@@ -533,9 +533,8 @@ def levels_of(
         require_finite(found, name="levels")
         found = np.unique(found)
         return found, np.zeros(len(found), dtype=bool)
-    step, start = as_number(interval, name="interval"), as_number(base, name="base")
-    if not (0 < step < math.inf and math.isfinite(start)):
-        raise InputError(f"interval must be above 0 and base finite, got {interval} and {base}")
+    step = as_positive(interval, name="interval", finite=True)
+    start = as_finite(base, name="base")
     every, (low, high) = as_count(index, name="index"), extremes()
     first, last = ((each - start) / step for each in (low, high))
     if not last - first < _LEVELS:
@@ -587,7 +586,7 @@ class Finish(NamedTuple):
     def of(cls, smooth: Any, min_length: Any, min_area: Any, simplify: Any) -> Finish:
         """Check the options."""
         return cls(
-            as_count(smooth, name="smooth"),
+            as_index(smooth, 0, _MOST_ROUNDS, name="smooth"),
             as_nonnegative(min_length, name="min_length", finite=True),
             as_nonnegative(min_area, name="min_area", finite=True),
             as_nonnegative(simplify, name="simplify", finite=True),
@@ -596,7 +595,7 @@ class Finish(NamedTuple):
     @property
     def factor(self) -> int:
         """The largest factor by which smoothing multiplies points: each round doubles them."""
-        return 1 << min(self.smooth, _MOST_ROUNDS)
+        return 1 << self.smooth
 
 
 def lines(tin: Surface, levels: Floats, marked: Bools, max_points: int, finish: Finish) -> Contours:

@@ -49,6 +49,7 @@ class Claims(NamedTuple):
     vertex: Rows
     z: Floats
     bound: Floats  # by how much rounding may have changed each height
+    row: Rows  # of all points, to name a claim
 
     @classmethod
     def joined(cls, parts: list[Claims]) -> Claims:
@@ -60,12 +61,13 @@ class Claims(NamedTuple):
 
     def among(self, rows: Bools) -> Claims:
         """Return some of the claims."""
-        return Claims(self.vertex[rows], self.z[rows], self.bound[rows])
+        return Claims(self.vertex[rows], self.z[rows], self.bound[rows], self.row[rows])
 
 
-def claims_of_points(vertex: NDArray[np.int32], z: Floats) -> Claims:
-    """Return the claims of points, whose heights are exact."""
-    return Claims(vertex.astype(np.int64), z, np.zeros(len(z)))
+def claims_of_points(vertex: NDArray[np.int32], z: Floats, row: Rows | None = None) -> Claims:
+    """Return the claims of points, whose heights are exact; they are numbered from 0 by default."""
+    rows = np.arange(len(z)) if row is None else row
+    return Claims(vertex.astype(np.int64), z, np.zeros(len(z)), rows)
 
 
 def claims_of_lines(mesh: ConstrainedDelaunay, z: Floats) -> tuple[Claims, Rows]:
@@ -99,7 +101,7 @@ def _along(
     largest = np.abs(mesh.points[np.column_stack((a, b, vertex))]).max(axis=(1, 2), initial=0.0)
     moved = beside + _ROUNDINGS * np.spacing(largest)
     bound = np.abs(rise) / length * moved + _ROUNDINGS * _EPS * (np.abs(z[a]) + np.abs(z[b]))
-    return Claims(vertex.astype(np.int64), found, bound)
+    return Claims(vertex.astype(np.int64), found, bound, vertex.astype(np.int64))
 
 
 def resolved(
@@ -161,20 +163,30 @@ def _reduced(  # noqa: PLR0917
     with np.errstate(over="ignore"):
         different = np.flatnonzero(least - most > tolerance)
     if policy == "raise" and len(different):
-        rows = vertex[different]
-        raise conflict(points[rows], rows, low[different], high[different], what, option)
+        places = vertex[different]
+        rows = _lowest_and_highest(claims)[different]
+        raise conflict(points[places], rows, low[different], high[different], what, option)
     if policy == "mean":
         total, number = np.bincount(at, claims.z), np.bincount(at)
         z[different] = total[different] / number[different]
     else:
         z[different] = (low if policy == "min" else high)[different]
-    return Claims.joined([alone, Claims(vertex, z, bound)])
+    return Claims.joined([alone, Claims(vertex, z, bound, claims.row[order][first])])
+
+
+def _lowest_and_highest(claims: Claims) -> Rows:
+    """Return the rows of the lowest and the highest claim at each vertex, the later row first."""
+    order = np.lexsort((claims.row, claims.z, claims.vertex))
+    vertex, row = claims.vertex[order], claims.row[order]
+    last = np.append(vertex[1:] != vertex[:-1], True)
+    pairs = np.column_stack((row[np.append(True, last[:-1])], row[last]))
+    return np.sort(pairs, axis=1)[:, ::-1]
 
 
 def conflict(  # noqa: PLR0917
     places: Floats, rows: Rows, low: Floats, high: Floats, what: str, option: str
 ) -> ConflictingValuesError:
-    """Return the error that heights differ at places."""
+    """Return the error that heights differ at places, each with two rows."""
     shown = ", ".join(
         f"({x:.10g}, {y:.10g}): {_range(*span)}"
         for (x, y), *span in zip(places[:_SHOWN], low.tolist(), high.tolist(), strict=False)
@@ -182,9 +194,9 @@ def conflict(  # noqa: PLR0917
     more = ", ..." if len(rows) > _SHOWN else ""
     return ConflictingValuesError(
         f"{what} have different heights at {counted(len(rows), 'place')}: {shown}{more}. Correct "
-        f'them, choose {option}="min", "max" or "mean", or give tolerance, the largest difference '
+        f'them, choose {option}="min", "max" or "mean", or give tolerance=, the largest difference '
         "of heights that are equal",
-        rows=np.column_stack((rows, rows)),
+        rows=rows,
     )
 
 

@@ -122,9 +122,9 @@ def _threaded(  # noqa: PLR0917
     differs = ~without & (np.abs(z - foot[:, 2]) > tolerance)
     if differs.any() and policy == "raise":
         low, high = np.minimum(z, foot[:, 2])[differs], np.maximum(z, foot[:, 2])[differs]
-        raise conflict(
-            points[row[differs], :2], row[differs], low, high, "a line and a point", "duplicates"
-        )
+        rows = np.column_stack((row[differs], row[differs]))
+        places = points[row[differs], :2]
+        raise conflict(places, rows, low, high, "a line and a point", "duplicates")
     both = np.stack((z, foot[:, 2]))
     resolved = {"min": both.min(axis=0), "max": both.max(axis=0)}.get(policy, both.mean(axis=0))
     foot[:, 2] = np.where(without, z, resolved)

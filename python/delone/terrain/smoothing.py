@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone._base.arrays import as_index
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import CrossingSegmentsError
 
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["smoothed"]
 
-_MOST_ROUNDS = 5
 _SHARE = 0.25
 
 
@@ -32,7 +30,6 @@ def smoothed(points: Floats, starts: Rows, tin: Surface | None, rounds: int) -> 
 
     Corners on hard breaklines of the surface, if there is one, are kept.
     """
-    as_index(rounds, 0, _MOST_ROUNDS, name="smooth")
     if not len(points):
         return points, starts
     sharp = np.array(_repeated(points, starts))
