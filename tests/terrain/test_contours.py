@@ -339,6 +339,35 @@ def test_smoothed_contours_do_not_cross(seed, rounds):
     assert_nothing_crosses(segments_of(smooth.points, smooth.starts))
 
 
+def meetings(found) -> tuple[set, set]:
+    """The pairs of lines that have a point in common, and those that share inner points only."""
+    lines = found.to_shapely()
+    tree = shapely.STRtree(lines)
+    pairs = {(i, j) for i, j in tree.query(lines, predicate="intersects").T.tolist() if i < j}
+    return pairs, {(i, j) for i, j in pairs if shapely.crosses(lines[i], lines[j])}
+
+
+@pytest.mark.parametrize("rounds", [1, 2, 3])
+def test_smoothed_contours_of_nearly_equal_levels_do_not_meet(rounds):
+    """Four levels, one unit in the last place apart: most nodes are at the same place."""
+    levels = [2.3]
+    for _ in range(3):
+        levels.append(float(np.nextafter(levels[-1], 9)))
+    met = grown = 0
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        points = np.column_stack((rng.integers(0, 9, (60, 2)), rng.integers(0, 6, 60)))
+        tin = TIN.from_points(points.astype(float), duplicates="max")
+        plain, smooth = tin.contours(levels), tin.contours(levels, smooth=rounds)
+        grown += len(smooth.points) - len(plain.points)
+        for before, after in zip(meetings(plain), meetings(smooth), strict=True):
+            assert after <= before
+            met += len(before)
+        simple = shapely.is_simple(plain.to_shapely())
+        assert shapely.is_simple(smooth.to_shapely())[simple].all()
+    assert met > 100 and grown > 100
+
+
 def test_smoothing_keeps_corners_at_hard_breaklines():
     z = [(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)]
     dike = [(0, 2, 6), (4, 2, 5)]

@@ -2,9 +2,9 @@
 
 Corner cutting: G. Chaikin, "An algorithm for high-speed curve generation", Computer Graphics and
 Image Processing 3 (1974). Each round replaces a corner by two points, on a quarter of the way to
-its neighbors. Whether lines cross is decided exactly, for all pairs; where two do, the corners next
-to both are restored, and everything is cut again without them. Each pass restores at least one
-corner, and without cut corners nothing crosses, so this terminates.
+its neighbors. Whether lines cross or meet is decided exactly, for all pairs; where two do and did
+not before, the corners next to both are restored, and everything is cut again without them. Each
+pass restores at least one corner, and without cut corners nothing crosses, so this terminates.
 """
 
 from __future__ import annotations
@@ -15,8 +15,11 @@ import numpy as np
 
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import CrossingSegmentsError
+from delone.predicates import orient2d
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from delone._base.types import Bools, Floats, Rows
     from delone.terrain.surface import Surface
 
@@ -37,17 +40,55 @@ def smoothed(points: Floats, starts: Rows, tin: Surface | None, rounds: int) -> 
         sharp |= _on_hard_lines(points, tin)
     while True:  # each pass restores a corner
         cut, begin, corner = _cut(points, starts, sharp, rounds)
-        crossing = _crossing(cut, begin)
-        if not len(crossing):
-            return cut, begin
+        crossing, met = _crossing(cut, begin)
         beside = np.unique(np.concatenate((corner[crossing], corner[crossing + 1])))
-        if sharp[beside].all():
+        if len(beside) and sharp[beside].all():
             # Only corners farther away are left.
             beside = np.unique(np.concatenate((beside - 1, beside + 1)))
             beside = beside[(beside >= 0) & (beside < len(sharp))]
             if sharp[beside].all():
                 sharp[:] = True
+        # Lines meet only where they did before, in corners that are kept, and on the same side.
+        touched = corner[met]
+        turned = corner[_changed_order(cut, begin, met)]
+        beside = np.concatenate((beside, touched[~sharp[touched]], turned[~sharp[turned]]))
+        if not len(beside):
+            return cut, begin
         sharp[beside] = True
+
+
+def _changed_order(points: Floats, starts: Rows, met: Rows) -> Rows:
+    """Return the neighbors of points where two lines meet and the second changes its side.
+
+    `met` are rows of points at the same place as others.
+    """
+    before, after, inner = _around(points, starts)
+    met = met[inner[met]]
+    _, place = np.unique(points[met], axis=0, return_inverse=True)
+    order = np.argsort(place.ravel(), kind="stable")
+    met, place = met[order], place.ravel()[order]
+    found = [np.empty(0, dtype=np.int64)]
+    # All pairs at a place: terminates, because places have finitely many rows.
+    for step in range(1, len(met)):
+        first = np.flatnonzero(place[step:] == place[:-step])
+        if not len(first):
+            break
+        a, b = met[first], met[first + step]
+        sides = [_side(points, before[a], a, after[a], other[b]) for other in (before, after)]
+        crosses = sides[0] * sides[1] <= 0
+        some = np.column_stack((before[a], after[a], before[b], after[b]))[crosses]
+        found.append(some.ravel())
+    return np.unique(np.concatenate(found))
+
+
+def _side(points: Floats, p: Rows, v: Rows, q: Rows, x: Rows) -> NDArray[np.int8]:
+    """Return on which side of the path from p over v to q points lie: 1 left, -1 right, 0 on it."""
+    one = orient2d(points[p], points[v], points[x])
+    two = orient2d(points[v], points[q], points[x])
+    turn = orient2d(points[p], points[v], points[q])
+    convex = np.where(turn > 0, np.minimum(one, two), np.maximum(one, two))
+    found: NDArray[np.int8] = np.sign(convex).astype(np.int8)
+    return found
 
 
 def _on_hard_lines(points: Floats, tin: Surface) -> Bools:
@@ -83,9 +124,7 @@ def _cut(points: Floats, starts: Rows, sharp: Bools, rounds: int) -> tuple[Float
         keep = sharp[corner]
         end = np.zeros(len(points), dtype=bool)
         end[first] = end[last] = True
-        before, after = np.arange(len(points)) - 1, np.arange(len(points)) + 1
-        before[first] = np.where(closed, last - 1, first)
-        after[last] = np.where(closed, first + 1, last)
+        before, after, _ = _around(points, starts)
         whole = keep | (end & ~np.isin(np.arange(len(points)), np.r_[first[closed], last[closed]]))
         # The last point of a closed line is its first one.
         drop = np.zeros(len(points), dtype=bool)
@@ -102,6 +141,20 @@ def _cut(points: Floats, starts: Rows, sharp: Bools, rounds: int) -> tuple[Float
     return points, starts, corner
 
 
+def _around(points: Floats, starts: Rows) -> tuple[Rows, Rows, Bools]:
+    """Return the rows before and after each point of a line, and whether there are both."""
+    first, last = starts[:-1], starts[1:] - 1
+    closed = (points[first] == points[last]).all(axis=1)
+    before, after = np.arange(len(points)) - 1, np.arange(len(points)) + 1
+    before[first] = np.where(closed, last - 1, first)
+    after[last] = np.where(closed, first + 1, last)
+    inner = np.ones(len(points), dtype=bool)
+    inner[first] = closed
+    # The last point of a closed line is its first one.
+    inner[last] = False
+    return before, after, inner
+
+
 def _reclosed(
     points: Floats, first: Rows, stop: Rows, closed: Bools, corner: Rows
 ) -> tuple[Floats, Rows, Rows]:
@@ -113,15 +166,23 @@ def _reclosed(
     return grown, np.concatenate(([0], np.cumsum(lengths))), corners
 
 
-def _crossing(points: Floats, starts: Rows) -> Rows:
-    """Return the starts of segments that cross others, as rows of `points`."""
+def _crossing(points: Floats, starts: Rows) -> tuple[Rows, Rows]:
+    """Return the starts of segments that cross others, and the points that meet others.
+
+    Both as rows of `points`; if segments cross, not all points that meet others are known yet.
+    """
     row = np.arange(len(points) - 1)
     row = np.delete(row, starts[1:-1] - 1)
     try:
         mesh = ConstrainedDelaunay(points, np.column_stack((row, row + 1)), planar=True)
     except CrossingSegmentsError as error:
         found: Rows = np.unique(row[error.pairs])
-        return found
+        return found, found[:0]
     # A line that now passes through a point of another touches it where it did not before.
     found = np.unique(row[mesh.report.through[:, 0]]).astype(np.int64)
-    return found
+    first, last = starts[:-1], starts[1:] - 1
+    closed = (points[first] == points[last]).all(axis=1)
+    ends = np.zeros(len(points), dtype=bool)
+    ends[last[closed]] = True
+    count = np.bincount(mesh.duplicate_of[~ends], minlength=len(points))
+    return found, np.flatnonzero((count[mesh.duplicate_of] > 1) & ~ends)
