@@ -13,6 +13,7 @@ import pytest
 from delone import BudgetExceededError, InputError, _core
 from delone.interpolate import Grid
 from delone.terrain import TIN
+from delone.terrain.smoothing import _changed_order as changed_order
 
 shapely = pytest.importorskip("shapely")
 
@@ -366,6 +367,24 @@ def test_smoothed_contours_of_nearly_equal_levels_do_not_meet(rounds):
         simple = shapely.is_simple(plain.to_shapely())
         assert shapely.is_simple(smooth.to_shapely())[simple].all()
     assert met > 100 and grown > 100
+
+
+@pytest.mark.parametrize(
+    ("other", "crosses"),
+    [
+        ([(0, 2), (1, 1), (2, 2)], False),
+        ([(2, 2), (1, 1), (0, 2)], False),
+        ([(0.5, 0), (1, 1), (1.5, 0)], False),
+        ([(0, 2), (1, 1), (1, 0)], True),
+        ([(1, 0), (1, 1), (0, 2)], True),
+        ([(0, 2), (1, 1), (2, np.nextafter(0, -1))], True),
+        ([(0, 2), (1, 1), (2, 0)], True),
+    ],
+)
+def test_lines_that_cross_where_they_meet_are_found(other, crosses):
+    points = np.array([(0, 0), (1, 1), (2, 0), (5, 5), (6, 6), *other], dtype=np.float64)
+    found = changed_order(points, np.array([0, 3, 5, 8]), np.array([1, 6]))
+    assert found.tolist() == ([0, 2, 5, 7] if crosses else [])
 
 
 def test_smoothing_keeps_corners_at_hard_breaklines():
