@@ -18,7 +18,9 @@
 //! rounded differences, and 2 u of the difference: at most (2 D + 8) u (sum |a_ik x^_k| + |b_i|). With
 //! weights, b_i has the rounded difference of two of them as another term, which passes through two
 //! sums, and the sum of both magnitudes is in place of |b_i|. In a flat, this term already errs by 6 u;
-//! with these sums and the difference, that is 10 u, which is below (2 D + 8) u.
+//! with these sums and the difference, that is 10 u, which is below (2 D + 8) u. (The magnitude of the
+//! weight is at most that of the squares, the products and the residual together. So without it the bound
+//! would be at most half as large, which only the worst case of all roundings could exceed.)
 //!
 //! **The value.** A point p with d = p - v_0 has the power P = |d|^2 - x . d. In rounded numbers |d|^2
 //! errs by (D + 2) u |d|^2, x^ . d by (D + 1) u |x^| |d|, the difference by u of both, and x^ in place of x

@@ -3,10 +3,11 @@
 //! det l_i = column i of (det A^-1) . d.
 //!
 //! By the fraction-free elimination of E. H. Bareiss (1968), whose entries are minors of the matrix
-//! [A | b | I]; b holds squares of lengths, less differences of weights. With D rows and differences
-//! below 2^bits, Hadamard's inequality for columns bounds minors by D^(D / 2) 2^(D bits), and with b in
-//! place of a column by (D + 1) D^(D / 2) 2^((D + 1) bits): below 2^[`minor_bits`]. In a flat, `bits` is larger
-//! by two, so that the squares of up to six more coordinates are below 2^(2 bits) together.
+//! [A | b | I]; b holds squares of lengths, less differences of weights. With differences below 2^bits,
+//! Hadamard's inequality bounds minors of D rows by D^(D / 2) 2^(D bits). An entry of b is a sum of at most
+//! nine terms below 2^(2 bits), also in a flat, where the squares of the coordinates that are not axes are
+//! weights. Expanded along b, a minor is below 9 D (D - 1)^((D - 1) / 2) 2^((D + 1) bits). Both are below
+//! 2^[`minor_bits`], which has `bits` to spare, at least two.
 
 use std::ops::{Div, Mul, Sub};
 

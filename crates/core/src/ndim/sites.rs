@@ -28,10 +28,6 @@ pub type Rest = [f64; MOST];
 /// The most coordinates of points.
 pub const MOST: usize = ROWS - 1;
 
-/// Bits that are added in a flat: the squares of at most six other coordinates are below 2^(2 bits)
-/// together, with two bits to spare.
-const REST_BITS: u32 = 2;
-
 /// Distinct points in lexicographic order.
 pub struct Sites<const D: usize, const P: usize> {
     /// The coordinates times 2^-high, and zeros.
@@ -128,7 +124,7 @@ impl<const D: usize, const P: usize> Sites<D, P> {
             scaled_rest,
             small_rest: Vec::new(),
             filtered: span <= WIDEST,
-            bits: span + 1 + if rest.is_empty() { 0 } else { REST_BITS },
+            bits: span + 1,
             rest,
             unit: -i64::from(span),
             given,

@@ -6,7 +6,7 @@ use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
 
 use super::super::cell::Mesh;
-use super::super::filter::{Test, barycentric, invert, minus};
+use super::super::filter::{Test, U, barycentric, invert, minus};
 use super::super::fine::Fine;
 use super::super::frame::Integers;
 use super::super::sites::{MOST, Sites};
@@ -253,4 +253,58 @@ fn bounds_hold_and_are_not_loose() {
             assert!(part > 1e-4, "{used:?}");
         }
     }
+}
+
+/// Checks that weights have their part in each bound, where all numbers are exact and bounds follow from
+/// the proofs alone.
+fn check_parts<const D: usize, const V: usize, const P: usize>() {
+    let (d, step, rest) = (D as f64, 0.5, 2f64.powi(-10));
+    let mut v = [[0.0; P]; V];
+    for i in 0..D {
+        v[i + 1][i] = step;
+    }
+    let about = |bound: f64, proven: f64| {
+        assert!(
+            bound >= proven && bound < 1.01 * proven,
+            "{D}-D: {bound:e} {proven:e}"
+        );
+    };
+    // The products, the square and the weight of a row; the weight is nearly the square.
+    let weight = step * step - rest;
+    let sizes = rest + step * step + weight;
+    // |A^-1| times the root of the number of rows.
+    let norm = d / step;
+    let a: [[f64; P]; D] = std::array::from_fn(|i| minus(&v[i + 1], &v[0]));
+    let test = Test::lifted(&a, Some([weight; D]));
+    let size = test.x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let slope = norm * (2.0 * d + 8.0) * U * sizes + (d + 5.0) * U * size;
+    about(2.0 * test.q0 / size, slope);
+    let corners: [&[f64; P]; V] = std::array::from_fn(|i| &v[i]);
+    let fine = Fine::<D>::lifted(&corners, [Pair::from_double(weight); D]);
+    about(fine.error(), norm * (8.0 * d + 48.0) * U * U * sizes);
+    // A point of which the weight is the power without it.
+    let mut p = [0.0; P];
+    p[0] = 1.0;
+    let heavy = 1.0 - test.x[0];
+    let (value, bound) = fine.power(&p, &v[0], Pair::from_double(heavy));
+    assert_eq!(value, 0.0);
+    let unit = (4.0 * d + 48.0) * U * U;
+    about(bound, fine.error() + unit * (1.0 + size + heavy));
+    let short = |q: &[f64; P]| -> [f64; D] { std::array::from_fn(|k| q[k]) };
+    let at: Vec<[f64; D]> = v.iter().chain([&p]).map(short).collect();
+    let mut weights = vec![0.0; V + 1];
+    weights[V] = heavy;
+    let sites = Sites::<D, P>::weighted(at, weights).unwrap();
+    let scaled = sites.weights[V];
+    let mesh = Mesh::<D, V, P>::new(sites, std::array::from_fn(|i| i as u32)).unwrap();
+    let (_, bound) = mesh.less_weight((scaled, 0.0), V as u32, 0);
+    about(bound, 24.0 * U * scaled);
+}
+
+#[test]
+fn weights_have_their_part_in_bounds() {
+    check_parts::<2, 3, 4>();
+    check_parts::<4, 5, 4>();
+    check_parts::<5, 6, 8>();
+    check_parts::<8, 9, 8>();
 }
