@@ -3,7 +3,7 @@
 #
 # Needs stable Rust and a C++ compiler, for libFuzzer, which is built from source; nothing is
 # installed. What cargo-fuzz would do is written out: coverage comes from stable flags, and no
-# sanitizer is used, as `unsafe` stands in two files alone, for memory and for one call
+# sanitizer is used, as `unsafe` stands in three files alone, for memory and for two calls
 # (CONTRIBUTING.md). `cargo fuzz run --sanitizer none` works as well, where it is installed.
 #
 # FUZZ_PROFILE (default release) is a profile of Cargo.toml; with smoke the targets are built on all

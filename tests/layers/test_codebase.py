@@ -27,6 +27,7 @@ CRATES = ROOT / "crates"
 UNSAFE = {
     "crates/core/src/base/memory.rs": "zeroed pages, large pages, signed rows",
     "crates/core/src/delaunay/space/dispatch.rs": "code for features found at run time",
+    "crates/core/src/ndim/dispatch.rs": "code for features found at run time",
 }
 
 LONGEST = 800

@@ -8,9 +8,9 @@ use crate::base::watch::Pace;
 /// A facet of the rim: a removed cell, the number of the corner opposite, and the cell outside.
 type Side = (u32, usize, u32);
 
-/// A ridge that one new cell has: its hash, `16 c + k` of the cell and the corner opposite, and the
-/// insertion.
-type Entry = (u64, u32, u32);
+/// A ridge that one new cell has: half of its hash, then `16 c + k` of the cell and the corner opposite, which
+/// is not 0 as k is not.
+type Entry = u64;
 
 /// Room for insertions, kept between them.
 pub struct Room {
@@ -184,8 +184,9 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
         let size = (room.rim.len() * D).next_power_of_two().max(16);
         if room.ridges.len() < size {
             room.ridges = Vec::new();
-            room.ridges = filled(size, (0, 0, 0))?;
+            room.ridges = filled(size, 0)?;
         }
+        room.ridges[..size].fill(0);
         clear_with_room(&mut room.ghosts, 0)?;
         let rim = std::mem::take(&mut room.rim);
         for &(old, i, outside) in &rim {
@@ -201,7 +202,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
                 self.measure_simplex(c);
                 self.last = c;
             }
-            self.join(c, &mut room.ridges[..size], room.stamp);
+            self.join(c, &mut room.ridges[..size]);
         }
         room.rim = rim;
         for &ghost in &room.ghosts {
@@ -235,7 +236,7 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
 
     /// Joins a new cell to those others that share a ridge of the rim with it.
     #[inline(always)]
-    fn join(&mut self, c: u32, ridges: &mut [Entry], stamp: u32) {
+    fn join(&mut self, c: u32, ridges: &mut [Entry]) {
         let v = self.cells[c as usize].vertices;
         let words = v.map(word);
         let sum = words[1..].iter().fold(0u64, |sum, &w| sum.wrapping_add(w));
@@ -245,13 +246,15 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
             let mut at = (hash >> shift) as usize;
             // The table is not full: the search ends.
             loop {
-                let (found, corner, of) = ridges[at];
-                if of != stamp {
-                    ridges[at] = (hash, c * 16 + k as u32, stamp);
+                let found = ridges[at];
+                if found == 0 {
+                    ridges[at] = hash << 32 | u64::from(c * 16 + k as u32);
                     break;
                 }
+                let corner = found as u32;
                 let (other, opposite) = (corner / 16, corner as usize % 16);
-                if found == hash && self.is_same_ridge(&v, k, other, opposite) {
+                if (found >> 32) as u32 == hash as u32 && self.is_same_ridge(&v, k, other, opposite)
+                {
                     self.cells[c as usize].neighbors[k] = other;
                     self.cells[other as usize].neighbors[opposite] = c;
                     break;

@@ -39,6 +39,7 @@
 mod cavity;
 mod cell;
 mod decide;
+mod dispatch;
 mod filter;
 mod fine;
 mod flat;

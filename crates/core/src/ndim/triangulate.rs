@@ -3,8 +3,8 @@
 use delone_predicates::lexicographic;
 use num_bigint::BigInt;
 
-use super::cavity::insert_all;
 use super::cell::Mesh;
+use super::dispatch;
 use super::frame::Integers;
 use super::order::arranged;
 use super::sites::Sites;
@@ -139,7 +139,7 @@ pub fn inserted<const D: usize, const V: usize, const P: usize>(
         used[v as usize] = true;
     }
     let mut mesh = Mesh::new(sites, corners)?;
-    insert_all(&mut mesh, order, &used, pace)?;
+    dispatch::insert_all(&mut mesh, order, &used, pace)?;
     Ok(mesh)
 }
 
