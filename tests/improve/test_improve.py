@@ -338,13 +338,46 @@ def test_flat_sides_may_be_flipped() -> None:
     assert area == pytest.approx(was, rel=1e-12)
 
 
+def test_angles_between_walls_are_named(tmp_path: Path) -> None:
+    """A sheet inside rises from an edge of a box by a small angle; the edge is named."""
+    low = np.array([(0, 0, 0), (4, 0, 0), (4, 4, 0), (0, 4, 0)])
+    points = np.concatenate((low, low + np.array((0, 0, 4)), [(4, 0, 0.5), (4, 4, 0.5)]))
+    box = delone.ConvexHull(points[:8]).simplices
+    # A sheet from one edge of the box upward: 7.1 degrees above the bottom, 83 degrees elsewhere.
+    faces = np.concatenate((box, [(0, 8, 9), (0, 9, 3)]))
+    mesh = delone.tetrahedralize(points, faces, imprint=True, min_angle=20, size=1.5)
+    report = mesh.report.improvement
+    assert report is not None
+    forced = report.cause == "angle"
+    assert forced.any()
+    ends = mesh.points[report.wall_edges[forced]]
+    assert (ends[:, :, [0, 2]] == 0).all()
+    for row, edge in zip(report.below[forced], report.wall_edges[forced], strict=True):
+        assert np.isin(edge, mesh.simplices[row]).all()
+    mesh.save(tmp_path / "wedge.npz")
+    loaded = TetMesh.load(tmp_path / "wedge.npz")
+    assert (loaded.report.improvement.wall_edges == report.wall_edges).all()
+
+
 def test_what_is_left_has_its_cause() -> None:
     flat = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0.3, 0.3, 0.01)])
     report = delone.improve((flat, [(0, 1, 2, 3)])).report
     assert report.cause.tolist() == ["angle"]
+    # All edges of the base have angles below the goal; the smallest one is at y = 0.
+    report = delone.improve(
+        (flat + np.array((0, 0.05, 0)) * (flat[:, 2:] > 0), [(0, 1, 2, 3)])
+    ).report
+    assert report.wall_edges.tolist() == [[0, 1]]
+    assert "1 edge of the boundary has such an angle, between the points 0 to 1" in str(report)
+    # As thin as rounding: that is the cause, although all faces are walls.
+    report = delone.improve((flat * (1, 1, 2.0**-50), [(0, 1, 2, 3)])).report
+    assert (report.cause.tolist(), report.wall_edges.tolist()) == (["rounding"], [[-1, -1]])
     hull = ball(0, 40)
     left = delone.improve(hull, min_angle=30).report
     assert set(left.cause.tolist()) <= {"angle", "boundary"}
+    forced = left.cause == "angle"
+    assert ((left.wall_edges >= 0).all(axis=1) == forced).all()
+    assert (left.wall_edges[~forced] == -1).all()
     assert len(left.below)
     assert "boundary" in str(left)
     cut = delone.improve(uniform(300), max_iter=1).report
@@ -561,6 +594,7 @@ def test_a_turned_box_says_which_tetrahedra_are_as_thin_as_the_rounding() -> Non
     mesh = delone.improve(delone.Delaunay(box(turned=True)))
     report = mesh.report
     thin = report.cause == "rounding"
+    assert (report.wall_edges[thin] == -1).all()
     limit = (16 * Fraction(2) ** -53 * Fraction(float(np.abs(mesh.points).max()))) ** 2
     for row, is_thin in zip(report.below, thin, strict=True):
         corners = exact(mesh.points[mesh.simplices[row]])

@@ -196,6 +196,13 @@ def _check_improvement(**arrays: NDArray[Any]) -> None:
     check_range("below", arrays["below"], 0, nsimplex)
     require((np.diff(arrays["below"]) > 0).all(), "below is out of order")
     check_range("cause", arrays["cause"], 0, 5)
+    edges = arrays["wall_edges"]
+    require(len(edges) == len(arrays["below"]), "wall_edges and below do not match")
+    check_range("wall_edges", edges, -1, len(arrays["points"]))
+    walls = arrays["cause"] == 0
+    require((edges[~walls] == -1).all(), "wall_edges has an edge for another cause")
+    known = (edges[walls] >= 0).all() and (edges[walls, 0] < edges[walls, 1]).all()
+    require(known, "wall_edges does not have the ends of each edge in order")
 
 
 def check_input(**arrays: NDArray[Any]) -> None:

@@ -136,6 +136,7 @@ _TET_MESH = Kind(
         "weights": ("<f8", 0),
         "below": ("<i8", 0),
         "cause": ("<i8", 0),
+        "wall_edges": ("<i8", 2),
         "refinement": ("<i8", 0),
         "refinement_bounds": ("<f8", 0),
         "too_large": ("<i8", 0),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._base.counting import counted, listed
+from delone._base.counting import agreed, counted, listed
 from delone._base.immutable import ReadOnly
 from delone._tiling.space import quality
 from delone._tiling.space.quality import EDGES
@@ -15,7 +15,7 @@ from delone._tiling.space.quality import EDGES
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone._base.types import Bools, Floats, Indices
+    from delone._base.types import Bools, Floats, Indices, Rows
     from delone._core import ImprovedMesh, ImprovementCounts
 
 __all__ = ["CAUSES", "COUNTS", "Changed", "ImproveReport", "report"]
@@ -113,6 +113,9 @@ class ImproveReport(ReadOnly):
         to 16 times that of the largest), ``"angle"`` (the boundary has this angle), ``"boundary"``
         (all four vertices are on the boundary, or fixed), ``"budget"`` (the limit on passes) or
         ``"other"`` (no single removal or move is an improvement).
+    wall_edges : ndarray of int64, shape (j, 2)
+        For the cause ``"angle"``, the edge at which two faces of the boundary, of regions or of the
+        input form the smallest such angle in the tetrahedron, as rows of points; otherwise -1.
 
     Attributes
     ----------
@@ -149,6 +152,7 @@ class ImproveReport(ReadOnly):
     exhausted: bool
     below: NDArray[np.int64]
     cause: NDArray[np.str_]
+    wall_edges: Rows
 
     @property
     def ok(self) -> bool:
@@ -179,6 +183,15 @@ class ImproveReport(ReadOnly):
                 noun = counted(len(rows), "tetrahedron")
                 shown = listed(rows, _SHOWN)
                 lines.append(f"{noun} below {self.min_angle:.4g} {what}: {shown}")
+        edges = np.unique(self.wall_edges[self.wall_edges[:, 0] >= 0], axis=0)
+        if len(edges):
+            shown = ", ".join(f"{a} to {b}" for a, b in edges[:_SHOWN].tolist())
+            more = ", ..." if len(edges) > _SHOWN else ""
+            verb = agreed(len(edges), "has", "have")
+            lines.append(
+                f"{counted(len(edges), 'edge')} of the boundary {verb} such an angle, between the "
+                f"points {shown}{more}"
+            )
         if self.exhausted:
             lines.append("stopped at the limit on passes")
         return "\n".join(lines)
@@ -250,8 +263,10 @@ def report(
     cause = np.full(len(below), _BUDGET if made.exhausted else _OTHER)
     held = _on_walls(simplices, walls, len(points)) | fixed
     cause[held[simplices[below]].all(axis=1)] = _BOUNDARY
-    cause[_forced(points, simplices[below], walls[below], min_angle)] = _ANGLE
+    wall_edges = _wall_edges(points, simplices[below], walls[below], min_angle)
+    cause[wall_edges[:, 0] >= 0] = _ANGLE
     cause[_thin(points, simplices[below], after.volume[below])] = _ROUNDING
+    wall_edges[cause != _ANGLE] = -1
     judged = ImproveReport(
         min_angle=min_angle,
         smallest_before=float(before.smallest_dihedral.min(initial=180.0)),
@@ -274,6 +289,7 @@ def report(
         exhausted=made.exhausted,
         below=below,
         cause=np.array(CAUSES)[cause],
+        wall_edges=wall_edges,
     )
     return judged, after
 
@@ -308,13 +324,16 @@ def _on_walls(simplices: Indices, walls: NDArray[np.bool_], npoints: int) -> NDA
     return held
 
 
-def _forced(
+def _wall_edges(
     points: Floats, simplices: Indices, walls: NDArray[np.bool_], min_angle: float
-) -> NDArray[np.bool_]:
-    """Return which tetrahedra have a small dihedral angle between two walls."""
+) -> NDArray[np.int64]:
+    """Return the edge with the smallest dihedral angle below the goal between two walls, or -1."""
     angles = quality.dihedral_angles(points, simplices)
-    forced = np.zeros(len(simplices), dtype=bool)
+    found = np.full((len(simplices), 2), -1, dtype=np.int64)
+    smallest = np.full(len(simplices), min_angle)
     for e, (i, j) in enumerate(EDGES):
         k, m = (c for c in range(4) if c not in (i, j))
-        forced |= walls[:, k] & walls[:, m] & (angles[:, e] < min_angle)
-    return forced
+        smaller = walls[:, k] & walls[:, m] & (angles[:, e] < smallest)
+        found[smaller] = np.sort(simplices[smaller][:, [i, j]], axis=1)
+        smallest[smaller] = angles[smaller, e]
+    return found

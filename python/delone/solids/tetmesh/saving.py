@@ -19,13 +19,14 @@ if TYPE_CHECKING:
 __all__ = ["of_report", "recovery_of", "report_of"]
 
 _ANGLES = ("min_angle", "smallest_before", "smallest_after", "largest_before", "largest_after")
-_HISTOGRAMS = ("bounds", "before", "after", "weights", "below")
+_HISTOGRAMS = ("bounds", "before", "after", "weights", "below", "wall_edges")
 _NO_COUNTS = np.empty(0, dtype=np.int64)
 _NO_NUMBERS = np.empty(0)
 # What a file contains for a missing report.
 _UNIMPROVED: dict[str, NDArray[Any]] = {
     **dict.fromkeys(("angles", "bounds", "weights"), _NO_NUMBERS),
     **dict.fromkeys(("counts", "before", "after", "below", "cause"), _NO_COUNTS),
+    "wall_edges": np.empty((0, 2), dtype=np.int64),
 }
 _UNRECOVERED: dict[str, NDArray[Any]] = {
     "recovery": _NO_COUNTS,
