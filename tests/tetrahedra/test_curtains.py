@@ -177,6 +177,15 @@ def test_the_limit_includes_apexes() -> None:
     assert bool(mesh.validate()) and mesh.nadded >= free
 
 
+@pytest.mark.parametrize("limit", [80, 100])
+def test_limits_are_those_of_the_caller(limit: int) -> None:
+    """The core gets what the apexes leave."""
+    points, faces, extra = with_sheet(np.random.default_rng(0))
+    with pytest.raises(delone.BudgetExceededError, match=f"max_points={limit}; bound") as caught:
+        tetrahedralize(points, faces, extra_points=extra, max_points=limit)
+    assert (caught.value.limit, caught.value.found) == (limit, limit + 1)
+
+
 def test_sheets_stay_in_refinement_and_improvement() -> None:
     points, faces, extra = with_sheet(np.random.default_rng(1))
     mesh = tetrahedralize(points, faces, extra_points=extra)

@@ -360,12 +360,12 @@ class _Stages(NamedTuple):
         places = np.concatenate((points[used], extra))
         curtains = None
         try:
-            made = self._by_core(places, faces, self.task.limit)
+            made = self._by_core(places, faces)
         except ShapeError as error:
             curtains = self._curtains(places, parts, faces, error)
             places = np.concatenate((places, curtains.apexes))
             everything = np.concatenate((faces, curtains.faces))
-            made = self._by_core(places, everything, self.task.limit - len(curtains.apexes))
+            made = self._by_core(places, everything, len(curtains.apexes))
         if len(made.crowded):
             crowded = made.crowded if curtains is None else curtains.given(made.crowded, count)
             raise _crowded(parts.source[crowded], self._advice())
@@ -381,12 +381,28 @@ class _Stages(NamedTuple):
         tiling = Tiling(everywhere, rows[simplices], neighbors, parts.faces)
         return _Everything(tiling, walls, cell, nadded, made.counts)
 
-    def _by_core(self, points: Floats, faces: Indices, limit: int) -> RecoveredFaces:
+    def _by_core(self, points: Floats, faces: Indices, apexes: int = 0) -> RecoveredFaces:
+        """Recover the faces; the limit includes apexes, the last points."""
+        limit = self.task.limit - apexes
         try:
             return _core.recover_faces(points, faces, limit, True, as_workers(self.task.workers))
         except BudgetExceededError as error:
+            if apexes:
+                raise self._beyond(error.found + apexes, apexes) from error
             error.args = (f"{error}{self._advice()}", *error.args[1:])
             raise
+
+    def _beyond(self, found: int, apexes: int) -> BudgetExceededError:
+        """Return the error that apexes and other added points are too many."""
+        limit = self.task.limit
+        # No option changes the number of apexes.
+        advice = self._advice() if found > apexes else ""
+        return BudgetExceededError(
+            f"at least {counted(found, 'point')} would be added, {apexes:,} of them at faces that "
+            f"end inside, more than max_points={limit:,}{advice}",
+            limit=limit,
+            found=found,
+        )
 
     def _curtains(
         self, places: Floats, parts: Parts, faces: Indices, error: ShapeError
@@ -395,14 +411,8 @@ class _Stages(NamedTuple):
         free = free_faces(faces)
         if not len(free):
             raise error
-        limit = self.task.limit
-        if len(free) > limit:
-            raise BudgetExceededError(
-                f"{counted(len(free), 'point')} would be added at faces that end inside, more than "
-                f"max_points={limit:,}",
-                limit=limit,
-                found=len(free),
-            )
+        if len(free) > self.task.limit:
+            raise self._beyond(len(free), len(free))
         curtains = Curtains.on(places, faces, free, self.task.workers)
         if curtains is None:
             raise _dangling(np.unique(parts.source[free])) from error
