@@ -88,6 +88,19 @@ def test_geometries() -> None:
     assert SizeByDistance(lines, near=1).distance([(2, 1), (5, 0)]).tolist() == [1, 1]
 
 
+def test_missing_geometries_have_no_places() -> None:
+    shapely = pytest.importorskip("shapely")
+    for given in ([None, shapely.Point(3, 4)], [shapely.Point(3, 4), None, shapely.LineString()]):
+        assert SizeByDistance(given, near=1).distance([(0, 0)]).tolist() == [5]
+
+
+def test_later_changes_of_arrays_do_not_matter() -> None:
+    points, cells = np.eye(3), np.array([[0, 1, 2]], dtype=np.int32)
+    size = SizeByDistance(points, cells, near=1)
+    points[:], cells[:] = 7, 0
+    assert size.distance(np.eye(3)).max() < 1e-15
+
+
 def test_tables() -> None:
     geopandas = pytest.importorskip("geopandas")
     shapely = pytest.importorskip("shapely")
@@ -129,6 +142,8 @@ def test_far_away() -> None:
     size = SizeByDistance([(-1e308, 0.0), (1.5e308, 0.0)], near=1, growth=1e-300)
     assert size.distance([(1e308, 0.0), (0.0, 0.0)]).tolist() == [5e307, 1e308]
     assert np.isinf(SizeByDistance([(-1.7e308, 0)], near=1).distance([(1.7e308, 0)])).all()
+    with np.errstate(over="raise"):
+        assert SizeByDistance([(0, 0)], near=1, growth=9, far=5)([(1e308, 0)]).tolist() == [5]
 
 
 @pytest.mark.parametrize(
@@ -146,7 +161,8 @@ def test_far_away() -> None:
         ([(0, np.nan)], None, {"near": 1}, delone.NonFiniteError, "places"),
         ([(0, 0, 0, 0)], None, {"near": 1}, delone.ShapeError, "places"),
         ([(0, 0), (1, 1)], [(0, 2)], {"near": 1}, delone.InputError, "cells"),
-        ([(0, 0), (1, 1)], [(0, 1, 1, 0)], {"near": 1}, delone.ShapeError, "cells"),
+        ([(0, 0), (1, 1)], [(0, 1, 1, 0)], {"near": 1}, delone.ShapeError, r"cells .* \(m, 2\) or"),
+        ([(0, 0), (1, 1)], [0, 1], {"near": 1}, delone.ShapeError, r"cells .* \(m, 2\) or"),
         (None, None, {"near": 1}, delone.DeloneError, "places"),
         (
             {"type": "Point", "coordinates": (0, 0)},

@@ -15,7 +15,9 @@ from delone._base.arrays import (
     as_simplices,
     as_workers,
     require_finite,
+    wrong_shape,
 )
+from delone._base.blocks import copied
 from delone._base.numbers import as_positive
 from delone.constrained import geodata
 from delone.errors import InputError
@@ -50,7 +52,7 @@ class SizeByDistance:
     places : array_like of float, shape (n, 2) or (n, 3), or geometries
         Points. Or, in 2-D, shapely geometries, a GeoDataFrame or GeoSeries, or mappings with
         coordinates: distances are from their points, lines and the boundaries of their polygons,
-        and heights are ignored.
+        and heights are ignored, as are missing and empty geometries.
     cells : array_like of int, shape (m, 2) or (m, 3), optional
         Segments or triangles, rows of points, from which distances are measured. By default
         they are measured from the points.
@@ -132,7 +134,8 @@ class SizeByDistance:
 
     def __call__(self, xi: ArrayLike) -> NDArray[np.float64]:
         """Return the size at each position, (k, ndim)."""
-        sizes = self.near + self.growth * self.distance(xi)
+        with np.errstate(over="ignore"):
+            sizes = self.near + self.growth * self.distance(xi)
         return np.minimum(sizes, self.far)
 
     def distance(self, xi: ArrayLike) -> NDArray[np.float64]:
@@ -150,7 +153,7 @@ class SizeByDistance:
 
         Raises
         ------
-        ShapeError, DtypeError
+        ShapeError, DtypeError, NonFiniteError
             The positions are not such an array.
 
         Examples
@@ -183,20 +186,24 @@ def _given(places: Any, cells: ArrayLike | None) -> _Places:
 
 
 def _of_arrays(places: Any, cells: ArrayLike | None) -> _Places:
-    points = as_points(places, name="places")
+    # Copies: the tree is made when it is first needed.
+    points = copied(as_points(places, name="places"))
     count = len(points)
     if cells is None:
         return _Places(points, _repeated(np.arange(count, dtype=np.int32)[:, None]))
     given = as_plain_array(cells, "cells")
-    if given.ndim == _SEGMENT and given.shape[1] == _SEGMENT:
+    if given.ndim != 2 or given.shape[1] not in (_SEGMENT, _TRIANGLE):
+        raise wrong_shape("cells", "(m, 2) or (m, 3)", given)
+    if given.shape[1] == _SEGMENT:
         return _Places(points, _repeated(as_segments(given, count, name="cells")))
-    return _Places(points, as_simplices(given, count, _TRIANGLE - 1, name="cells"))
+    return _Places(points, copied(as_simplices(given, count, _TRIANGLE - 1, name="cells")))
 
 
 def _of_geometries(places: Any, cells: ArrayLike | None) -> _Places | None:
     """Return points, lines and boundaries of geometries; None if they are coordinates."""
     several = isinstance(places, list | tuple | np.ndarray) and len(places)
-    first = places[0] if several else places
+    # A layer may start with missing geometries.
+    first = next((each for each in places if each is not None), None) if several else places
     if not (geodata.is_geometry(first) or hasattr(places, "geometries")):
         return None
     if cells is not None:
