@@ -469,7 +469,7 @@ class ConflictingValuesError(InputError):
     Attributes
     ----------
     rows : ndarray of int64, shape (k, 2)
-        Rows of points, each with the first row of the same coordinates.
+        Two rows of points at each place, the later one first; rows of lines follow those of points.
 
     Examples
     --------

@@ -314,7 +314,8 @@ class Grid(GridCells):
         Raises
         ------
         InputError
-            `n` is below 1, or `points` does not have a positive number for each of the 2 n rows.
+            `n` is below 1 or above 8192, or `points` does not have a positive number for each of
+            the 2 n rows.
 
         Notes
         -----

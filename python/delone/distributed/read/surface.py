@@ -164,6 +164,11 @@ class TiledSurface(TileFolder):
         InputError
             There is no such attribute, or `line` is not one line.
 
+        Warns
+        -----
+        UserWarning
+            The line is outside the surface, so the profile has no points.
+
         Examples
         --------
         >>> import tempfile
@@ -209,6 +214,8 @@ class TiledSurface(TileFolder):
         ------
         InputError
             There is no such attribute, the reference systems differ, or `executor` is neither.
+        LimitError
+            Areas exceed the largest double, or both volumes do.
 
         Warns
         -----
