@@ -146,6 +146,33 @@ def test_far_away() -> None:
         assert SizeByDistance([(0, 0)], near=1, growth=9, far=5)([(1e308, 0)]).tolist() == [5]
 
 
+@pytest.mark.filterwarnings("error")
+def test_sizes_beyond_the_doubles() -> None:
+    steep = SizeByDistance([(0, 0)], near=1, growth=1e300)
+    assert steep([(1e10, 0), (0, 0)]).tolist() == [np.inf, 1]
+    assert SizeByDistance([(0, 0)], near=1, growth=1e300, far=7)([(1e10, 0)]).tolist() == [7]
+
+
+def test_arrays_may_change_later() -> None:
+    for points in (np.zeros((3, 2)), np.zeros((3, 3))):
+        cells = np.array([(0, 1, 2)], dtype=np.int32)
+        for size in (SizeByDistance(points, near=1), SizeByDistance(points, cells, near=1)):
+            before = np.array(points), np.array(cells)
+            points[:], cells[:] = 5, 7
+            assert size.distance(before[0]).tolist() == [0, 0, 0]
+            points[:], cells[:] = before
+
+
+def test_geometries_that_are_missing() -> None:
+    shapely = pytest.importorskip("shapely")
+    point = shapely.Point(3, 4)
+    for given in ([None, point], [point, None], np.array([None, point]), (shapely.Point(), point)):
+        assert SizeByDistance(given, near=1).distance([(0, 0)]).tolist() == [5]
+    alone = np.array(point, dtype=object)
+    with pytest.raises(delone.DtypeError, match="places contains geometries"):
+        SizeByDistance(alone, near=1)
+
+
 @pytest.mark.parametrize(
     ("places", "cells", "options", "error", "words"),
     [
@@ -161,8 +188,11 @@ def test_far_away() -> None:
         ([(0, np.nan)], None, {"near": 1}, delone.NonFiniteError, "places"),
         ([(0, 0, 0, 0)], None, {"near": 1}, delone.ShapeError, "places"),
         ([(0, 0), (1, 1)], [(0, 2)], {"near": 1}, delone.InputError, "cells"),
-        ([(0, 0), (1, 1)], [(0, 1, 1, 0)], {"near": 1}, delone.ShapeError, r"cells .* \(m, 2\) or"),
         ([(0, 0), (1, 1)], [0, 1], {"near": 1}, delone.ShapeError, r"cells .* \(m, 2\) or"),
+        ([(0, 0), (1, 1)], [(0, 1, 1, 0)], {"near": 1}, delone.ShapeError, r"\(m, 2\) or \(m, 3\)"),
+        ([(0, 0), (1, 1)], [], {"near": 1}, delone.InputError, "nothing to measure"),
+        ([(0, 0), (1,)], None, {"near": 1}, delone.ShapeError, "places has rows of unequal"),
+        ([None, None], None, {"near": 1}, delone.DeloneError, "places"),
         (None, None, {"near": 1}, delone.DeloneError, "places"),
         (
             {"type": "Point", "coordinates": (0, 0)},
@@ -186,5 +216,5 @@ def test_bad_positions() -> None:
     with pytest.raises(delone.NonFiniteError, match="xi"):
         size([(0, np.nan)])
     points, faces = solids.box((0, 0, 0), (1, 1, 1))
-    with pytest.raises(delone.ShapeError, match="xi"):
+    with pytest.raises(delone.ShapeError, match=r"xi has 3 coordinates, the places of .* have 2"):
         delone.tetrahedralize(points, faces, size=size)

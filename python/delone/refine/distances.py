@@ -17,10 +17,9 @@ from delone._base.arrays import (
     require_finite,
     wrong_shape,
 )
-from delone._base.blocks import copied
 from delone._base.numbers import as_positive
 from delone.constrained import geodata
-from delone.errors import InputError
+from delone.errors import InputError, ShapeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -134,7 +133,7 @@ class SizeByDistance:
 
     def __call__(self, xi: ArrayLike) -> NDArray[np.float64]:
         """Return the size at each position, (k, ndim)."""
-        with np.errstate(over="ignore"):
+        with np.errstate(over="ignore"):  # such sizes are infinite
             sizes = self.near + self.growth * self.distance(xi)
         return np.minimum(sizes, self.far)
 
@@ -163,6 +162,11 @@ class SizeByDistance:
         >>> size.distance([(2, 1), (7, 4)]).round(9).tolist()
         [1.0, 5.0]
         """
+        other = _SEGMENT + _TRIANGLE - self.ndim
+        if isinstance(xi, np.ndarray) and xi.ndim == _SEGMENT and xi.shape[1] == other:
+            raise ShapeError(
+                f"xi has {other} coordinates, the places of the SizeByDistance have {self.ndim}"
+            )
         given = as_points(xi, ndim=self.ndim, name="xi")
         require_finite(given, name="xi")
         if self._tree is None:
@@ -182,28 +186,28 @@ def _given(places: Any, cells: ArrayLike | None) -> _Places:
     require_finite(found.points, name="places")
     if not len(found.cells):
         raise InputError("places has nothing to measure distances from")
-    return found
+    # The arrays are read later, when the caller may have changed theirs.
+    return _Places(found.points.copy(), found.cells.copy())
 
 
 def _of_arrays(places: Any, cells: ArrayLike | None) -> _Places:
-    # Copies: the tree is made when it is first needed.
-    points = copied(as_points(places, name="places"))
+    points = as_points(places, name="places")
     count = len(points)
     if cells is None:
         return _Places(points, _repeated(np.arange(count, dtype=np.int32)[:, None]))
     given = as_plain_array(cells, "cells")
-    if given.ndim != 2 or given.shape[1] not in (_SEGMENT, _TRIANGLE):
-        raise wrong_shape("cells", "(m, 2) or (m, 3)", given)
-    if given.shape[1] == _SEGMENT:
+    if given.shape == (0,) or (given.ndim == _SEGMENT and given.shape[1] == _SEGMENT):
         return _Places(points, _repeated(as_segments(given, count, name="cells")))
-    return _Places(points, copied(as_simplices(given, count, _TRIANGLE - 1, name="cells")))
+    if given.ndim != _SEGMENT or given.shape[1] != _TRIANGLE:
+        raise wrong_shape("cells", "(m, 2) or (m, 3)", given)
+    return _Places(points, as_simplices(given, count, _TRIANGLE - 1, name="cells"))
 
 
 def _of_geometries(places: Any, cells: ArrayLike | None) -> _Places | None:
     """Return points, lines and boundaries of geometries; None if they are coordinates."""
-    several = isinstance(places, list | tuple | np.ndarray) and len(places)
-    # A layer may start with missing geometries.
-    first = next((each for each in places if each is not None), None) if several else places
+    first = places
+    if isinstance(places, list | tuple) or (isinstance(places, np.ndarray) and places.ndim):
+        first = next((place for place in places if place is not None), None)
     if not (geodata.is_geometry(first) or hasattr(places, "geometries")):
         return None
     if cells is not None:
