@@ -45,6 +45,13 @@ def test_polygons_that_are_none(given: Any) -> None:
         Grid.from_polygons(given)
 
 
+def test_mappings_are_not_polygons_of_shapely() -> None:
+    mapping = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (1, 1)]]}
+    for given in (mapping, [mapping]):
+        with pytest.raises(InputError, match=r"geometry of shapely: convert it with shapely\.geom"):
+            Grid.from_polygons(given)
+
+
 def test_a_missing_polygon_is_an_empty_cell() -> None:
     shapely = pytest.importorskip("shapely")
     grid = Grid.from_polygons([None, shapely.box(0, 0, 1, 1)])

@@ -259,6 +259,14 @@ def _first(count: int, one: Rows, other: Rows) -> Rows:
     return first
 
 
+def _no_shape(given: Any) -> InputError:
+    """Return the error for something that is not a shapely geometry."""
+    error = no_geometry(given, "polygons")
+    if isinstance(given, Mapping) and "type" in given:
+        error.args = (f"{error} of shapely: convert it with shapely.geometry.shape",)
+    return error
+
+
 def geometries(given: Any, *, degrees: bool, workers: int | None) -> Rings:
     """Return the rings of shapely polygons, one cell for each geometry."""
     shapely = require("shapely", extra="geo", what="a grid of polygons")
@@ -271,10 +279,10 @@ def geometries(given: Any, *, degrees: bool, workers: int | None) -> Rings:
     if isinstance(table, shapely.Geometry):
         table = [table]
     if isinstance(table, str | bytes | Mapping) or not hasattr(table, "__iter__"):
-        raise no_geometry(table, "polygons")
+        raise _no_shape(table)
     items = np.array([item for item in table], dtype=object)  # noqa: C416
     for item in items[~shapely.is_valid_input(items)]:
-        raise no_geometry(item, "polygons")
+        raise _no_shape(item)
     polygon = {3, 6}
     kinds = shapely.get_type_id(items)
     wrong = [k for k, kind in enumerate(kinds.tolist()) if kind not in polygon and kind != -1]
