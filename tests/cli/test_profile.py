@@ -135,3 +135,13 @@ def test_lines_outside_are_named(tmp_path, command):
         assert (words in command("profile", survey, line)[2]) is said
         options = ("--profile", line, "-o", tmp_path / f"site-{name}")
         assert (words in command("terrain", survey, *options)[2]) is said
+
+
+@pytest.mark.parametrize(("options", "gaps"), [((), None), (("--max-edge", "2"), 1)])
+def test_gaps_are_counted(tmp_path, command, options, gaps):
+    survey, line = tmp_path / "a.csv", tmp_path / "line.geojson"
+    rows = [f"{x},{y},1" for x in (0, 1, 5, 6) for y in (0, 1)]
+    survey.write_text("\n".join(("x,y,z", *rows)))
+    line.write_text(json.dumps({"type": "LineString", "coordinates": [[0, 0.5], [6, 0.5]]}))
+    code, out, _ = command("profile", survey, line, *options, "--json")
+    assert code == 0 and json.loads(out)["gaps"] == gaps

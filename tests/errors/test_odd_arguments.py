@@ -45,6 +45,12 @@ def test_polygons_that_are_none(given: Any) -> None:
         Grid.from_polygons(given)
 
 
+@pytest.mark.parametrize("n", [0, 8193])
+def test_gaussian_grids_have_a_limit(n: int) -> None:
+    with pytest.raises(InputError, match=f"^n must be an integer from 1 to 8192, got {n}"):
+        Grid.from_gaussian(n)
+
+
 def test_mappings_are_not_polygons_of_shapely() -> None:
     mapping = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (1, 1)]]}
     for given in (mapping, [mapping]):
