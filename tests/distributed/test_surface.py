@@ -149,6 +149,11 @@ def test_levels_beside_each_other_see_each_other(
     same(tiles.contours(levels), TIN.from_points(points).contours(levels))
 
 
+def test_a_line_outside_is_told(both: Any) -> None:
+    with pytest.warns(UserWarning, match="outside the surface: the profile has no points"):
+        assert len(both[0].profile([(1e9, 1e9), (2e9, 2e9)])) == 0
+
+
 def test_a_limit_and_wrong_arguments(both: Any) -> None:
     tiles, _, interval = both
     with pytest.raises(BudgetExceededError, match="at least"):
