@@ -78,6 +78,12 @@ def test_labels_of_contours(folder, figures, command):
     ):
         code, _, message = command(*call, *options)
         assert code != 0 and words in message
+    for length in ("-5", "0", "nan", "inf"):
+        code, _, message = command(
+            *CALL, "--label-length", length, "--labels", "c.gpkg", "-o", "c.shp"
+        )
+        assert code == 2 and "--label-length must be above 0 and finite" in message
+        assert not (folder / "c.shp").exists()
 
 
 def test_parts_of_a_shapefile_are_replaced_together(folder, figures, command):

@@ -15,6 +15,7 @@ import typer
 from delone import distributed
 from delone._base.atomic import check_target, replacing
 from delone._base.extras import require
+from delone._base.numbers import as_positive
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import noting
 from delone.cli.options import numbers, outputs
@@ -122,6 +123,9 @@ def contours(
         raise Failure("--min-length is for lines, not for --bands", Exit.USAGE)
     if labels is None and label_length is not None:
         raise Failure("--label-length needs --labels", Exit.USAGE)
+    if label_length is not None:
+        with reading():
+            as_positive(label_length, name="--label-length", finite=True)
     if labels is not None and bands:
         raise Failure("--labels is for lines, not for --bands", Exit.USAGE)
     _check(output or [], source, options, bands=bands)
