@@ -479,3 +479,45 @@ def test_holes_as_narrow_as_a_rounding_are_oriented_exactly(turned: bool, shift:
             given = corners if not turned else corners[1:] + corners[:1]
             shape = {"type": "Polygon", "coordinates": [ring, given]}
             assert area(triangulate_polygon(shape, rule="nonzero")) == 1 - twice / 2
+
+
+@pytest.mark.parametrize(
+    "mapping",
+    [
+        {"type": "FeatureCollection"},
+        {"type": "FeatureCollection", "features": None},
+        {"type": "FeatureCollection", "features": {"a": 1}},
+        {"type": "FeatureCollection", "features": [5]},
+        {"type": "Feature"},
+        {"type": "Feature", "geometry": 5},
+        {"type": "GeometryCollection"},
+        {"type": "GeometryCollection", "geometries": 5},
+        {"type": "GeometryCollection", "geometries": [5]},
+        {"type": "MultiPoint", "coordinates": 5},
+        {"type": "LineString", "coordinates": 5},
+        {"type": "MultiLineString", "coordinates": 5},
+        {"type": "Polygon", "coordinates": 5},
+        {"type": "Polygon", "coordinates": [5]},
+        {"type": "MultiPolygon", "coordinates": 5},
+        {"type": "MultiPolygon", "coordinates": [5]},
+        dict,
+    ],
+)
+def test_mappings_that_are_no_geometries(mapping):
+    calls = (
+        delone.from_geometry,
+        delone.mesh,
+        lambda given: delone.Overlaps(given, [[(0, 0), (1, 0), (0, 1)]]),
+        lambda given: delone.SizeByDistance(given, near=1),
+    )
+    for call in calls:
+        with pytest.raises(delone.DeloneError):
+            call(mapping)
+
+
+def test_a_feature_without_a_geometry():
+    triangle = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (0, 1)]]}
+    features = [{"type": "Feature", "geometry": each} for each in (None, triangle)]
+    collection = {"type": "FeatureCollection", "features": features}
+    assert delone.Overlaps(collection, [triangle]).areas.tolist() == [0.5]
+    assert delone.Overlaps({"a": 1, **triangle}, [triangle]).areas.tolist() == [0.5]

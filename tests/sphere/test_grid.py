@@ -224,6 +224,8 @@ def test_polygons_of_shapely() -> None:
         Grid.from_polygons(table.to_crs(3857))
     with pytest.raises(delone.InputError, match="geometry 1 is a POINT"):
         Grid.from_polygons([hole, shapely.Point(0, 0)])
+    with pytest.raises(delone.InputError, match="is not a geometry"):
+        Grid.from_polygons(dict)
 
 
 def test_tables_of_cells() -> None:

@@ -131,7 +131,7 @@ def _count(given: Any) -> int:
     if isinstance(given, dict) or not hasattr(given, "__len__"):
         return 1
     # A ring of positions is one geometry.
-    return 1 if len(given) and np.ndim(given[0]) == 1 else len(given)
+    return 1 if len(given) and np.ndim(next(iter(given))) == 1 else len(given)
 
 
 def _require_range(points: Floats, name: str) -> None:

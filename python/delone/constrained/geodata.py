@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Mapping
 from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -20,7 +21,7 @@ from delone._base.counting import agreed
 from delone.errors import DtypeError, InputError, NonFiniteError, ShapeError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator
 
     from numpy.typing import NDArray
 
@@ -129,12 +130,12 @@ def _batches(given: Any, name: str) -> Iterator[Any]:
     elif isinstance(getattr(given, "geometries", None), np.ndarray):  # a GeometrySet
         yield from _batches(given.geometries, name)
     elif isinstance(given, dict):
-        yield from _features(given)
+        yield from _features(given, name)
     elif hasattr(given, "__geo_interface__"):
-        yield from _features(given.__geo_interface__)
+        yield from _features(given.__geo_interface__, name)
     elif isinstance(given, str | bytes | os.PathLike):
         raise InputError(_string_error(given, name))
-    elif not hasattr(given, "__iter__"):
+    elif not hasattr(given, "__iter__") or isinstance(given, type):
         raise no_geometry(given, name)
     else:
         refuse_masks(given, name)
@@ -217,14 +218,30 @@ def _object_array(items: list[Any]) -> NDArray[Any]:
     return array
 
 
-def _features(mapping: Mapping[str, Any]) -> Iterator[Any]:
-    if mapping.get("type") == "FeatureCollection":
-        for feature in mapping["features"]:
-            yield from _features(feature)
-    elif mapping.get("type") == "Feature":
+def _features(mapping: Any, name: str) -> Iterator[Any]:
+    kind = _kind_of(mapping, name)
+    if kind == "FeatureCollection":
+        for feature in _listed(mapping.get("features"), mapping, name):
+            yield from _features(feature, name)
+    elif kind == "Feature":
+        if "geometry" not in mapping:
+            raise no_geometry(dict(mapping), name)
         yield mapping["geometry"] or {"type": "GeometryCollection", "geometries": []}
     else:
         yield mapping
+
+
+def _kind_of(mapping: Any, name: str) -> Any:
+    if not isinstance(mapping, Mapping):
+        raise no_geometry(mapping, name)
+    return mapping.get("type")
+
+
+def _listed(member: Any, mapping: Mapping[str, Any], name: str) -> Any:
+    """Return a part of a mapping in GeoJSON form that must be a list."""
+    if not hasattr(member, "__iter__"):
+        raise no_geometry(dict(mapping), name)
+    return member
 
 
 def _split(geometries: NDArray[Any]) -> Parts:
@@ -302,17 +319,17 @@ def no_geometry(given: object, name: str) -> InputError:
     return InputError(f"{name}: {given!r:.80} is not a geometry")
 
 
-def _of_mapping(mapping: Mapping[str, Any], name: str) -> Iterator[tuple[Floats, int]]:
+def _of_mapping(mapping: Any, name: str) -> Iterator[tuple[Floats, int]]:
     """Split a mapping in GeoJSON form into runs of coordinates, and the kind of each."""
-    kind = mapping.get("type")
+    kind = _kind_of(mapping, name)
     if kind == "GeometryCollection":
-        for geometry in mapping["geometries"]:
+        for geometry in _listed(mapping.get("geometries"), mapping, name):
             if geometry is not None:
                 yield from _of_mapping(geometry, name)
         return
-    coordinates: Any = mapping.get("coordinates")
-    if coordinates is None or not isinstance(kind, str):
+    if not isinstance(kind, str):
         raise no_geometry(dict(mapping), name)
+    coordinates = _listed(mapping.get("coordinates"), mapping, name)
     if kind in ("Point", "MultiPoint"):
         for point in [coordinates] if kind == "Point" else coordinates:
             yield _run([point], kind), POINTS
@@ -321,7 +338,7 @@ def _of_mapping(mapping: Mapping[str, Any], name: str) -> Iterator[tuple[Floats,
             yield _run(line, kind), LINE
     elif kind in ("Polygon", "MultiPolygon"):
         for polygon in [coordinates] if kind == "Polygon" else coordinates:
-            for i, ring in enumerate(polygon):
+            for i, ring in enumerate(_listed(polygon, mapping, name)):
                 yield _run(ring, kind), INTERIOR if i else EXTERIOR
     else:
         raise InputError(f"{name}: unknown geometry type {kind!r:.80}")

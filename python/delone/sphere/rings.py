@@ -278,7 +278,7 @@ def geometries(given: Any, *, degrees: bool, workers: int | None) -> Rings:
     table = getattr(given, "geometry", given)
     if isinstance(table, shapely.Geometry):
         table = [table]
-    if isinstance(table, str | bytes | Mapping) or not hasattr(table, "__iter__"):
+    if isinstance(table, str | bytes | Mapping | type) or not hasattr(table, "__iter__"):
         raise _no_shape(table)
     items = np.array([item for item in table], dtype=object)  # noqa: C416
     for item in items[~shapely.is_valid_input(items)]:

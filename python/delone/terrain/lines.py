@@ -113,7 +113,7 @@ def _features(given: Any) -> list[Any]:
         given = getattr(given, "__geo_interface__", given)
     if isinstance(given, dict):
         several = given.get("type") == "FeatureCollection" and "features" in given
-        return list(given["features"]) if several else [given]
+        return list(given["features"] or ()) if several else [given]
     if is_shapely(given) or _is_line(given):
         return [given]
     if hasattr(given, "__iter__") and not isinstance(given, str | bytes):
