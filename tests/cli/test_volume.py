@@ -107,3 +107,27 @@ def test_lines_are_refused_with_their_feature(folder, command):
     geopandas.GeoSeries(shapes).to_file(lines)
     code, _, message = command("volume", folder / "a b.csv", 2, "--regions", lines)
     assert code != 0 and "regions, feature 1 is not a polygon but contains a LineString" in message
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".gpkg"])
+def test_regions_without_columns(folder, figures, suffix):
+    lot = shapely.box(*(LOW + 20), *(LOW + 40))
+    geopandas.GeoDataFrame(geometry=[lot], crs=28992).to_file(folder / "plain.gpkg")
+    call = ("volume", folder / "a b.csv", 2, "--crs", "EPSG:28992")
+    figures(*call, "--regions", folder / "plain.gpkg", "-o", folder / f"v{suffix}")
+    table = geopandas.read_file(folder / f"v{suffix}")
+    assert len(table) == 1 and float(table["area"].iloc[0]) == pytest.approx(400)
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".npy"])
+def test_rows_of_the_other_surface_name_its_file(folder, command, suffix):
+    twice = np.array([(0.0, 0, 1), (1, 0, 2), (0, 1, 3), (0, 0, 9)])
+    other = folder / f"other{suffix}"
+    if suffix == ".npy":
+        np.save(other, twice)
+    else:
+        np.savetxt(other, twice, delimiter=",", header="x,y,z", comments="")
+    code, _, message = command("volume", folder / "a b.csv", other)
+    assert code == 4 and "different heights at 1 place" in message
+    assert str(other) in message and "a b.csv" not in message
+    assert ("lines 5, 2 of" in message) == (suffix == ".csv")

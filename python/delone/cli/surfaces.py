@@ -12,6 +12,7 @@ import typer
 
 from delone import __version__
 from delone.cli.exits import Exit, Failure, reading
+from delone.cli.lines import ROWS, name_lines
 from delone.cli.notes import noting
 from delone.cli.options import Chord, Classes, Json, Layer, Quiet, Workers, class_numbers, split
 from delone.cli.referenced import Crs, Planar, referenced
@@ -285,7 +286,11 @@ def other_surface(
         own["window"] = None
     own |= dict.fromkeys(("breaklines", "soft_breaklines", "boundary", "level"))
     alone = replace(options, **own)
-    return surface(file, alone, watch, say)
+    try:
+        return surface(file, alone, watch, say)
+    except ROWS as error:
+        name_lines(error, file, other=True)
+        raise
 
 
 def _has_window(file: Path) -> bool:

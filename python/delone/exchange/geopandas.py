@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from delone.errors import InputError
 from delone.exchange.parts import parts_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
@@ -68,7 +69,7 @@ def beside(
     """
     geopandas = require("geopandas", extra="geo", what="a table of geometries")
     own = dict(columns or {})
-    if data is None:
+    if _is_nothing(data):
         return geopandas.GeoDataFrame(own, geometry=shapes, crs=crs)
     if hasattr(data, "geometry") and hasattr(data, "crs"):
         crs = data.crs if crs is None else crs
@@ -89,7 +90,7 @@ def columns_beside(
     """
     pandas = require("pandas", extra="geo", what="a table")
     table = pandas.DataFrame(dict(own))
-    if data is None:
+    if _is_nothing(data):
         return table
     if hasattr(data, "geometry") and hasattr(data, "crs"):
         data = data.drop(columns=data.geometry.name)
@@ -97,6 +98,11 @@ def columns_beside(
     frame = _checked(_framed(pandas, data), count, set(own), of)
     rows = np.repeat(np.arange(count), 1 if repeats is None else repeats)
     return pandas.concat([table, frame.iloc[rows].reset_index(drop=True)], axis=1)
+
+
+def _is_nothing(data: Any) -> bool:
+    """Return whether there are no columns: None, or a mapping without any."""
+    return data is None or (isinstance(data, Mapping) and not data)
 
 
 def _framed(pandas: Any, data: Any) -> Any:
