@@ -234,7 +234,9 @@ def test_hostile_names_are_text(hill, command, tmp_path):
         (("--hillshade",), 2, "--hillshade needs --dem"),
         (("--dem", "1", "--simplify", "1"), 2, "are for --contours"),
         (("--dem", "1", "--min-area", "1"), 2, "--contours and --bands"),
-        (("--contours", "-1"), 2, "interval must be above 0"),
+        (("--contours", "-1"), 2, "--contours must be above 0"),
+        (("--bands", "0"), 2, "--bands must be above 0"),
+        (("--dem", "inf"), 2, "--dem must be above 0 and finite"),
         (("--dem", "1", "--profile", "none.gpkg"), 3, "none.gpkg"),
     ],
 )

@@ -16,6 +16,7 @@ import typer
 from delone import __version__
 from delone._base.atomic import replacing
 from delone._base.extras import require
+from delone._base.numbers import as_positive
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import noting
 from delone.cli.outputs import write_all
@@ -179,6 +180,9 @@ def _write_page(
 
 def _wanted(folder: Path, given: dict[str, Any], shades: list[str]) -> list[_Product]:
     """Return the requested products, in the order in which they are computed."""
+    for name in ("contours", "bands", "dem"):
+        if given[name] is not None:
+            as_positive(given[name], name=f"--{name}", finite=True)
     found = [
         _Product(name, [folder / f"{name}.gpkg"])
         for name in ("contours", "bands")
