@@ -14,6 +14,7 @@ from delone import BudgetExceededError, InputError, _core
 from delone.interpolate import Grid
 from delone.terrain import TIN
 from delone.terrain.smoothing import _changed_order as changed_order
+from delone.terrain.smoothing import smoothed
 
 shapely = pytest.importorskip("shapely")
 
@@ -367,6 +368,14 @@ def test_smoothed_contours_of_nearly_equal_levels_do_not_meet(rounds):
         simple = shapely.is_simple(plain.to_shapely())
         assert shapely.is_simple(smooth.to_shapely())[simple].all()
     assert met > 100 and grown > 100
+
+
+def test_smoothing_ends_with_lines_that_cross() -> None:
+    """Lines that cross before they are smoothed are returned as they are."""
+    points = np.array([(0, 0), (1, 1), (2, 0), (0, 0.5), (1, 0.4), (2, 0.5)])
+    starts = np.array([0, 3, 6])
+    found, begin = smoothed(points, starts, None, 2)
+    assert (found == points).all() and (begin == starts).all()
 
 
 @pytest.mark.parametrize(

@@ -40,6 +40,8 @@ def smoothed(points: Floats, starts: Rows, tin: Surface | None, rounds: int) -> 
         sharp |= _on_hard_lines(points, tin)
     while True:  # each pass restores a corner
         cut, begin, corner = _cut(points, starts, sharp, rounds)
+        if sharp.all():
+            return cut, begin  # the given lines, which may cross
         crossing, met = _crossing(cut, begin)
         beside = np.unique(np.concatenate((corner[crossing], corner[crossing + 1])))
         if len(beside) and sharp[beside].all():
