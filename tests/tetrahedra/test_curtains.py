@@ -186,6 +186,24 @@ def test_limits_are_those_of_the_caller(limit: int) -> None:
     assert (caught.value.limit, caught.value.found) == (limit, limit + 1)
 
 
+def test_regions_stay_apart() -> None:
+    """A wall divides the box; the cells of its two sides remain two regions."""
+    random = np.random.default_rng(1)
+    points, faces, extra = with_sheet(random)
+    wall = [(-1, -1, 3.5), (5, -1, 3.5), (5, 5, 3.5), (-1, 5, 3.5)]
+    rows = len(points) + np.array([(0, 1, 2), (0, 2, 3)])
+    mesh = tetrahedralize(
+        np.concatenate((points, wall)),
+        np.concatenate((faces, rows)),
+        imprint=True,
+        extra_points=extra,
+    )
+    assert mesh.nadded and bool(mesh.validate())
+    volumes = [mesh.quality().volume[mesh.region == r].sum() for r in range(2)]
+    assert sorted(volumes) == pytest.approx([8, 56], rel=1e-12)
+    assert set(mesh.region.tolist()) == {0, 1}
+
+
 def test_sheets_stay_in_refinement_and_improvement() -> None:
     points, faces, extra = with_sheet(np.random.default_rng(1))
     mesh = tetrahedralize(points, faces, extra_points=extra)
