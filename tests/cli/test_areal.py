@@ -144,7 +144,7 @@ def test_reference_systems(layers, command, figures, tmp_path):
         (("--sum", "age"), 2, "no column 'age'; its columns: people, income, use, id"),
         (("--sum", "use"), 2, "not numeric"),
         (("--sum", "people", "--majority", "people"), 2, "has two methods: sum and majority"),
-        (("--sum", "people", "--min-fraction", "2"), 2, "min_fraction must be from 0 to 1"),
+        (("--sum", "people", "--min-fraction", "2"), 2, "--min-fraction must be from 0 to 1"),
         (("--sum", "covered"), 2, "the output has a column covered"),
         (("-o", "map.png"), 2, "a map needs a column"),
         (("-o", "out.tif"), 2, "polygons can only be written to"),

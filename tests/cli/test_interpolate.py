@@ -73,7 +73,7 @@ def test_cells_far_from_all_points_have_no_value(tmp_path, soundings, figures, c
     code, out, _ = command("interpolate", soundings, "--grid", "9x9", "--max-distance", "0.03")
     assert code == 0 and "or farther than 0.03 from any point" in out
     code, _, err = command("interpolate", soundings, "--grid", "9x9", "--max-distance", "-1")
-    assert code == 2 and "max_distance must be at least 0" in err
+    assert code == 2 and "--max-distance must be at least 0" in err
 
 
 def test_cells_that_are_outside_by_less_than_a_tolerance_have_values(tmp_path, figures, command):

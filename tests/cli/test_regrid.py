@@ -204,7 +204,7 @@ def test_without_an_output_only_the_report(model, tmp_path, figures):
         (("{bare}", "1x1"), 2, "give --infer-bounds"),
         (("{bare}", "1x1", "--infer-bounds", "--radians"), 2, "contradicts"),
         (("{model}", "1x1", "--weights", "{text}"), 3, "not a NetCDF file"),
-        (("{model}", "1x1", "--min-fraction", "2"), 2, "min_fraction must be from 0 to 1"),
+        (("{model}", "1x1", "--min-fraction", "2"), 2, "--min-fraction must be from 0 to 1"),
     ],
 )
 def test_what_is_refused(model, command, arguments, code, message):
