@@ -149,6 +149,14 @@ def test_apexes_avoid_points() -> None:
         assert abs(other.apexes[0, 2] - 2) < abs(inner[2] - 2)
 
 
+def test_temporary_faces_stand_for_their_bases() -> None:
+    """Errors name given faces; three temporary ones are on each base."""
+    corner = np.eye(3, 3, dtype=np.int32)
+    curtains = Curtains(np.array([4, 9], dtype=np.int32), np.zeros((2, 3)), np.tile(corner, (2, 1)))
+    rows = np.arange(8, 18, dtype=np.int32)
+    assert curtains.given(rows, 12).tolist() == [8, 9, 10, 11, 4, 4, 4, 9, 9, 9]
+
+
 def test_rounds_end_where_there_is_no_room(monkeypatch: pytest.MonkeyPatch) -> None:
     # Walls one unit in the last place above and below.
     points, faces = solids.box((0, 0, 1 - 2.0**-53), (4, 4, 1 + 2.0**-52))

@@ -4,7 +4,8 @@ Corner cutting: G. Chaikin, "An algorithm for high-speed curve generation", Comp
 Image Processing 3 (1974). Each round replaces a corner by two points, on a quarter of the way to
 its neighbors. Whether lines cross or meet is decided exactly, for all pairs; where two do and did
 not before, the corners next to both are restored, and everything is cut again without them. Each
-pass restores at least one corner, and without cut corners nothing crosses, so this terminates.
+pass restores at least one corner, and with all corners the given lines are returned, so this
+terminates.
 """
 
 from __future__ import annotations
