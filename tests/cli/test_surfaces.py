@@ -34,6 +34,8 @@ def test_volumes(site, figures, command):
     layers = "--layer", "tin survey", "--other-layer", "tin design"
     found = figures("volume", OTHER, OTHER, *layers)
     assert found["area"] == pytest.approx(96) and found["units"] == "m"
+    code, _, err = command("volume", site, "3", "--layer", "tin survey", "--other-layer", "EG")
+    assert code == 2 and "--other-layer is for a file, not for a height" in err
     code, _, err = command("volume", OTHER, site, "--layer", "tin survey", "--other-layer", "EG")
     assert code == 2 and "heights are in m and in us-ft" in err
 

@@ -246,3 +246,33 @@ def test_open_lines_in_lists_of_tables_are_no_region():
     line = geopandas.GeoDataFrame(geometry=[shapely.LineString([(1, 1), (5, 1), (5, 5)])])
     with pytest.raises(InputError, match="LineString"):
         TIN.from_points(BOX).volume_to(0.0, region=[line])
+
+
+@pytest.mark.parametrize(
+    "mapping",
+    [
+        {"type": "GeometryCollection"},
+        {"type": "GeometryCollection", "geometries": 5},
+        {"type": "GeometryCollection", "geometries": [None]},
+        {"type": "FeatureCollection", "features": None},
+        {"type": "FeatureCollection", "features": {}},
+        {"type": "FeatureCollection", "features": [{"type": "Feature"}]},
+        {"type": "Feature", "geometry": {}},
+        {"type": "LineString", "coordinates": None},
+        {"type": "LineString", "coordinates": "12"},
+    ],
+)
+@pytest.mark.parametrize("name", ["breaklines", "boundary", "holes"])
+def test_malformed_mappings_are_no_lines(mapping, name):
+    pytest.importorskip("shapely")
+    with pytest.raises(InputError, match=f"{name}: .* is not a geometry"):
+        TIN.from_points(BOX, **{name: mapping})
+
+
+def test_an_empty_boundary_is_an_error():
+    pytest.importorskip("shapely")
+    for empty in ([], {"type": "Feature", "geometry": None}, np.empty((0, 2)), [None]):
+        with pytest.raises(InputError, match="boundary is empty"):
+            TIN.from_points(BOX, boundary=empty)
+    # Empty layers of holes and breaklines are what a job in steps has.
+    assert len(TIN.from_points(BOX, holes=[], breaklines=[]).simplices) == 2

@@ -75,7 +75,10 @@ def contours(
         str | None, typer.Option(help="Levels, instead of an interval, such as 10,12.5,15.")
     ] = None,
     base: Annotated[float, typer.Option(help="Level from which intervals are counted.")] = 0.0,
-    index: Annotated[int, typer.Option(help="Mark every n-th level as an index contour.")] = 5,
+    index: Annotated[
+        int | None,
+        typer.Option(help="Mark every n-th level as an index contour; by default every 5th."),
+    ] = None,
     smooth: Annotated[int, typer.Option(help="Number of corner-cutting rounds, 0 to 5.")] = 0,
     min_length: Annotated[
         float, typer.Option(help="Leave out lines shorter than this, in units of the points.")
@@ -117,17 +120,14 @@ def contours(
 ) -> None:
     """Compute contour lines, or the polygons between them, of points with heights."""
     wanted = None if levels is None else numbers(levels, "--levels")
-    if bands and smooth:
-        raise Failure("--smooth is for lines, not for --bands", Exit.USAGE)
-    if bands and min_length:
-        raise Failure("--min-length is for lines, not for --bands", Exit.USAGE)
+    of_lines: dict[str, Any] = {"index": 5 if index is None else index, "min_length": min_length}
+    if bands:
+        _refuse_of_lines(smooth=smooth, min_length=min_length, index=index, labels=labels)
     if labels is None and label_length is not None:
         raise Failure("--label-length needs --labels", Exit.USAGE)
     if label_length is not None:
         with reading():
             as_positive(label_length, name="--label-length", finite=True)
-    if labels is not None and bands:
-        raise Failure("--labels is for lines, not for --bands", Exit.USAGE)
     _check(output or [], source, options, bands=bands)
     if labels is not None:
         with writing():
@@ -136,7 +136,6 @@ def contours(
     watch = Stopwatch()
     how: dict[str, Any] = {"interval": interval, "base": base, "min_area": min_area}
     how["max_points"] = max_points
-    of_lines: dict[str, Any] = {"index": index, "min_length": min_length}
     with spinner(options.silent) as say:
         tin = surface_or_tiles(source, options, watch, say)
         say("computing contours")
@@ -320,6 +319,8 @@ def volume(
         raise Failure("--region is one volume, --regions has a row for each: give one", Exit.USAGE)
     if regions is None and (output or regions_layer is not None):
         raise Failure("--output and --regions-layer need --regions", Exit.USAGE)
+    if other_layer is not None and height_of(other) is not None:
+        raise Failure("--other-layer is for a file, not for a height", Exit.USAGE)
     require_known(options.crs)
     polygons = [path for path in (region, regions) if path is not None]
     ready_rows(output or [], [source, Path(other), *polygons, *options.inputs()])
@@ -356,6 +357,14 @@ def volume(
     print_figures(
         source, figures, as_json=options.as_json, quiet=options.quiet, of=units_of, more=more
     )
+
+
+def _refuse_of_lines(**given: object) -> None:
+    """Reject options that have no meaning for polygons; by default they are 0 or None."""
+    for name, value in given.items():
+        if value not in (None, 0):
+            option = f"--{name.replace('_', '-')}"
+            raise Failure(f"{option} is for lines, not for --bands", Exit.USAGE)
 
 
 def _check(output: list[Path], source: Path, options: SurfaceOptions, *, bands: bool) -> None:

@@ -33,6 +33,7 @@ __all__ = [
     "LINE",
     "POINTS",
     "Parts",
+    "geometries_in",
     "is_geometry",
     "is_shapely",
     "no_geometry",
@@ -130,9 +131,9 @@ def _batches(given: Any, name: str) -> Iterator[Any]:
     elif isinstance(getattr(given, "geometries", None), np.ndarray):  # a GeometrySet
         yield from _batches(given.geometries, name)
     elif isinstance(given, dict):
-        yield from _features(given, name)
+        yield from geometries_in(given, name)
     elif hasattr(given, "__geo_interface__"):
-        yield from _features(given.__geo_interface__, name)
+        yield from geometries_in(given.__geo_interface__, name)
     elif isinstance(given, str | bytes | os.PathLike):
         raise InputError(_string_error(given, name))
     elif not hasattr(given, "__iter__") or isinstance(given, type):
@@ -218,16 +219,20 @@ def _object_array(items: list[Any]) -> NDArray[Any]:
     return array
 
 
-def _features(mapping: Any, name: str) -> Iterator[Any]:
+def geometries_in(mapping: Any, name: str) -> Iterator[Mapping[str, Any]]:
+    """Yield the geometries of a mapping in GeoJSON form; a feature without one has an empty one."""
     kind = _kind_of(mapping, name)
     if kind == "FeatureCollection":
-        for feature in _listed(mapping.get("features"), mapping, name):
-            yield from _features(feature, name)
+        for feature in _listed(mapping, "features", name):
+            yield from geometries_in(feature, name)
     elif kind == "Feature":
         if "geometry" not in mapping:
             raise no_geometry(dict(mapping), name)
-        yield mapping["geometry"] or {"type": "GeometryCollection", "geometries": []}
+        geometry = mapping["geometry"]
+        empty = {"type": "GeometryCollection", "geometries": []}
+        yield from geometries_in(empty if geometry is None else geometry, name)
     else:
+        _listed(mapping, "geometries" if kind == "GeometryCollection" else "coordinates", name)
         yield mapping
 
 
@@ -237,11 +242,12 @@ def _kind_of(mapping: Any, name: str) -> Any:
     return mapping.get("type")
 
 
-def _listed(member: Any, mapping: Mapping[str, Any], name: str) -> Any:
-    """Return a part of a mapping in GeoJSON form that must be a list."""
-    if not hasattr(member, "__iter__"):
+def _listed(mapping: Mapping[str, Any], member: str, name: str) -> Any:
+    """Return a member of a mapping in GeoJSON form that must be a list."""
+    found = mapping.get(member)
+    if not hasattr(found, "__iter__") or isinstance(found, Mapping | str | bytes):
         raise no_geometry(dict(mapping), name)
-    return member
+    return found
 
 
 def _split(geometries: NDArray[Any]) -> Parts:
@@ -323,13 +329,13 @@ def _of_mapping(mapping: Any, name: str) -> Iterator[tuple[Floats, int]]:
     """Split a mapping in GeoJSON form into runs of coordinates, and the kind of each."""
     kind = _kind_of(mapping, name)
     if kind == "GeometryCollection":
-        for geometry in _listed(mapping.get("geometries"), mapping, name):
+        for geometry in _listed(mapping, "geometries", name):
             if geometry is not None:
                 yield from _of_mapping(geometry, name)
         return
     if not isinstance(kind, str):
         raise no_geometry(dict(mapping), name)
-    coordinates = _listed(mapping.get("coordinates"), mapping, name)
+    coordinates = _listed(mapping, "coordinates", name)
     if kind in ("Point", "MultiPoint"):
         for point in [coordinates] if kind == "Point" else coordinates:
             yield _run([point], kind), POINTS
@@ -338,7 +344,8 @@ def _of_mapping(mapping: Any, name: str) -> Iterator[tuple[Floats, int]]:
             yield _run(line, kind), LINE
     elif kind in ("Polygon", "MultiPolygon"):
         for polygon in [coordinates] if kind == "Polygon" else coordinates:
-            for i, ring in enumerate(_listed(polygon, mapping, name)):
+            rings = _listed({**mapping, "coordinates": polygon}, "coordinates", name)
+            for i, ring in enumerate(rings):
                 yield _run(ring, kind), INTERIOR if i else EXTERIOR
     else:
         raise InputError(f"{name}: unknown geometry type {kind!r:.80}")

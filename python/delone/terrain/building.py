@@ -148,7 +148,7 @@ def build(
         rings_of(each, name=name, crs=system)
         for name, each in (("boundary", boundary), ("holes", holes), ("islands", islands))
     ]
-    refuse_crossing_rings("boundary and holes", *rings)
+    _refuse_wrong_rings(boundary, *rings)
     given = [
         [Ring(line) for line in lines_of(each, name=name, crs=system)]
         for name, each in (("breaklines", breaklines), ("soft_breaklines", soft_breaklines))
@@ -196,6 +196,13 @@ def build(
         found = peeled(mesh, found, limit, voids=voids) | (lake & found)
     made = compact(mesh, heights, found, soft, system, heights_in)
     return made._replace(adjustments=adjustments_of(merged, lakes))
+
+
+def _refuse_wrong_rings(boundary: Any, *rings: list[Ring]) -> None:
+    """Reject a boundary without rings, and rings that cross each other."""
+    if boundary is not None and not rings[0]:
+        raise InputError("boundary is empty: leave it out for the convex hull")
+    refuse_crossing_rings("boundary and holes", *rings)
 
 
 def _without_lines(

@@ -15,7 +15,7 @@ import numpy as np
 from delone._base.arrays import as_plain_array, as_points, require_finite, wrong_shape
 from delone._base.extras import require
 from delone._base.georeference import transformed
-from delone.constrained.geodata import is_shapely, no_geometry
+from delone.constrained.geodata import geometries_in, is_shapely, no_geometry
 from delone.errors import InputError
 
 if TYPE_CHECKING:
@@ -112,8 +112,9 @@ def _features(given: Any) -> list[Any]:
     if not isinstance(given, dict) and not is_shapely(given):
         given = getattr(given, "__geo_interface__", given)
     if isinstance(given, dict):
-        several = given.get("type") == "FeatureCollection" and "features" in given
-        return list(given["features"] or ()) if several else [given]
+        several = given.get("type") == "FeatureCollection"
+        features = given.get("features") if several else None
+        return list(features) if isinstance(features, list | tuple) else [given]
     if is_shapely(given) or _is_line(given):
         return [given]
     if hasattr(given, "__iter__") and not isinstance(given, str | bytes):
@@ -198,13 +199,8 @@ def _of_set(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
 def _of_mapping(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
     """Yield the lines of GeoJSON, and of objects with a GeoJSON-like interface."""
     mapping = given if isinstance(given, dict) else given.__geo_interface__
-    part = {"FeatureCollection": "features", "Feature": "geometry"}.get(str(mapping.get("type")))
-    if part is None:
-        yield from _of_geometry(_shape(mapping, name), name, number)
-    elif part in mapping:
-        yield from _each(mapping[part], name, number)
-    else:
-        raise no_geometry(mapping, name)
+    for geometry in geometries_in(mapping, name):
+        yield from _of_geometry(_shape(geometry, name), name, number)
 
 
 def _shape(mapping: Any, name: str) -> Any:

@@ -25,7 +25,7 @@ from delone._tiling.plane.geometry import total
 from delone.errors import DegenerateInputError
 from delone.terrain.layer import Layer
 from delone.terrain.lines import LOOSE, rings_by_feature
-from delone.terrain.volumes import Region, goal_of, region_of, require_net
+from delone.terrain.volumes import Region, goal_of, refuse_overflow, region_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -208,7 +208,7 @@ def volumes(tin: Surface, other: Any, regions: Any) -> Volumes:
             found[row, :5] = [total(column) for column in sums]
     _warn(np.flatnonzero(found[:, 4] == 0))
     cut, fill, cut_area, fill_area, area, whole = found.T.copy()
-    require_net(cut, fill)
+    refuse_overflow(cut, fill)
     return Volumes(
         cut=cut,
         fill=fill,

@@ -463,8 +463,11 @@ def cross_sections(  # noqa: PLR0917
     alignment = line_of(line, name="line", crs=tin.crs)
     widths = [as_number(left, name="left")]
     widths.append(widths[0] if right is None else as_number(right, name="right"))
-    if not (np.isfinite(widths).all() and min(widths) >= 0 and max(widths) > 0):
-        raise InputError(f"left and right must be finite, at least 0, and not both 0; got {widths}")
+    for side, width in zip(("left", "right"), widths, strict=True):
+        if not (np.isfinite(width) and width >= 0):
+            raise InputError(f"{side} must be finite and at least 0, got {width:g}")
+    if not max(widths):
+        raise InputError("left and right are both 0: cross sections have no length")
     moved = np.append(True, (np.diff(alignment, axis=0) != 0).any(axis=1))
     alignment = alignment[moved]
     if len(alignment) < 2:

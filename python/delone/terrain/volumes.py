@@ -28,8 +28,8 @@ __all__ = [
     "Volume",
     "goal_of",
     "plane_of",
+    "refuse_overflow",
     "region_of",
-    "require_net",
     "volume",
     "wanted_region",
     "warn_of_nothing",
@@ -123,7 +123,7 @@ def volume(tin: Surface, other: Any, region: Any) -> Volume:
         warn_of_nothing(region)
     # Correctly rounded sums: independent of the order of the triangles.
     cut, fill, cut_area, fill_area, area = map(total, found)
-    require_net(np.array(cut), np.array(fill))
+    refuse_overflow(np.array(cut), np.array(fill))
     return Volume(
         cut=cut,
         fill=fill,
@@ -155,34 +155,32 @@ def require_same_crs(one: str | None, other: str | None) -> None:
 def goal_of(tin: Surface, other: Any) -> tuple[Sheet | None, list[float]]:
     """Return the surface to reach, or None and a plane."""
     if hasattr(tin, "_sheet"):
-        _require_area(tin._sheet().points)
+        _require_area(tin._sheet().points, "this surface")
     if not hasattr(other, "_sheet"):
         return None, plane_of(other)
     require_same_crs(tin.crs, other.crs)
     require_same_units(tin.units, other.units, what="the surfaces")
     sheet: Sheet = other._sheet()
-    _require_area(sheet.points)
+    _require_area(sheet.points, "the surface to reach")
     return sheet, [0.0, 0.0, 0.0]
 
 
-def _require_area(points: Floats) -> None:
+def _require_area(points: Floats, whose: str) -> None:
     """Reject surfaces whose areas may exceed the largest double: nothing else would be right."""
     with np.errstate(over="ignore"):
         area = (points.max(axis=0) - points.min(axis=0)).prod()
     if not np.isfinite(area):
-        raise _too_large("areas")
+        raise _too_large(f"areas of {whose} exceed")
 
 
-def require_net(cut: Floats, fill: Floats) -> None:
-    """Reject volumes that are both beyond doubles: their difference would be NaN."""
-    if (np.isinf(cut) & np.isinf(fill)).any():
-        raise _too_large("volumes")
+def refuse_overflow(cut: Floats, fill: Floats) -> None:
+    """Reject volumes beyond the largest double."""
+    if np.isinf(cut).any() or np.isinf(fill).any():
+        raise _too_large("a volume exceeds")
 
 
 def _too_large(what: str) -> LimitError:
-    return LimitError(
-        f"{what} of this surface exceed the largest double: give coordinates in a larger unit"
-    )
+    return LimitError(f"{what} the largest double: give coordinates in a larger unit")
 
 
 def plane_of(other: Any) -> list[float]:

@@ -19,7 +19,7 @@ from delone.terrain.profiles import Profile
 from delone.terrain.volumes import (
     Volume,
     goal_of,
-    require_net,
+    refuse_overflow,
     require_same_crs,
     wanted_region,
     warn_of_nothing,
@@ -61,7 +61,7 @@ def volume(tin: TileFolder, other: Any, region: Any, value: str, executor: Any) 
     if not of_tiles[:, 4].any():
         warn_of_nothing(region)
     cut, fill, cut_area, fill_area, area = map(summed, parts)
-    require_net(np.array(cut), np.array(fill))
+    refuse_overflow(np.array(cut), np.array(fill))
     return Volume(
         cut=cut,
         fill=fill,
