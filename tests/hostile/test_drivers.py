@@ -20,12 +20,18 @@ from delone import FileFormatError
 from delone.io import read_geometries, read_points
 
 CORPUS = Path(__file__).parents[1] / "corpus" / "hostile"
-SUFFIXES = (".geojson", ".json", ".gpkg", ".shp", ".fgb")
+SUFFIXES = (".geojson", ".json", ".gpkg", ".sqlite", ".shp", ".fgb")
 PACKED = {".gz": gzip.compress, ".xz": lzma.compress, ".bz2": bz2.compress}
 POINTS = shapely.points([(0, 0), (4, 0), (0, 3)])
 FRAME = geopandas.GeoDataFrame({"depth": [1.0, 2, 3]}, geometry=POINTS, crs="EPSG:28992")
 
 
+DRIVERS = {
+    ".gpkg": "GPKG",
+    ".sqlite": "SQLite",
+    ".fgb": "FlatGeobuf",
+    ".shp": "ESRI Shapefile",
+}
 NAMES = ("virtual-dataset", "pipeline", "service", "schema", "link")
 
 
@@ -97,7 +103,7 @@ def test_the_first_bytes_alone_make_no_flatgeobuf(tmp_path, canary, listener, ve
     refused(path, canary, listener)
 
 
-@pytest.mark.parametrize("suffix", [".gpkg", ".shp", ".fgb"])
+@pytest.mark.parametrize("suffix", [".gpkg", ".sqlite", ".shp", ".fgb"])
 def test_other_formats_under_a_suffix_are_refused(tmp_path, suffix):
     FRAME.to_file(tmp_path / "whole.geojson")
     shutil.copy(tmp_path / "whole.geojson", tmp_path / f"other{suffix}")
@@ -124,8 +130,7 @@ def test_json_of_other_kinds_is_refused(tmp_path, kind):
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_names_are_names_of_files(tmp_path, monkeypatch, name, suffix):
     # A library may take parts of a name for an archive, a query or an address.
-    shape = {".json": "GeoJSON", ".geojson": "GeoJSON"}.get(suffix)
-    FRAME.to_file(tmp_path / f"plain{suffix}", **({"driver": shape} if shape else {}))
+    FRAME.to_file(tmp_path / f"plain{suffix}", driver=DRIVERS.get(suffix, "GeoJSON"))
     for file in list(tmp_path.glob("plain.*")):
         shutil.copy(file, tmp_path / f"{name}{file.suffix}")
     monkeypatch.chdir(tmp_path)
@@ -145,9 +150,7 @@ def test_a_folder_that_looks_like_an_address(tmp_path, monkeypatch, listener, su
     (tmp_path / "http:" / host).mkdir(parents=True)
     FRAME.to_file(
         tmp_path / "http:" / host / f"a{suffix}",
-        driver={".gpkg": "GPKG", ".fgb": "FlatGeobuf", ".shp": "ESRI Shapefile"}.get(
-            suffix, "GeoJSON"
-        ),
+        driver=DRIVERS.get(suffix, "GeoJSON"),
     )
     monkeypatch.chdir(tmp_path)
     assert len(read_points(f"http:/{host}/a{suffix}")) == 3

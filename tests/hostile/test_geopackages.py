@@ -1,4 +1,4 @@
-"""GeoPackages are databases: tables and views in them may call functions that open files."""
+"""GeoPackages and SQLite files are databases: their tables and views may call functions."""
 
 from __future__ import annotations
 
@@ -101,6 +101,44 @@ def test_functions_in_views(package, canary, listener, expression, layer):
         read_points(package, layer=layer)
     assert not canary.was_opened
     assert listener.requests == []
+
+
+@pytest.mark.parametrize("layer", [None, "a", "v"])
+@pytest.mark.parametrize(
+    "definition",
+    [
+        "CREATE VIRTUAL TABLE v USING VirtualOGR('{folder}/secret.csv')",
+        "CREATE VIRTUAL TABLE v USING VirtualText('{folder}/secret.csv', 'UTF-8', 1)",
+        "CREATE VIEW v AS SELECT ogc_fid, GEOMETRY, readfile('{folder}/secret.csv') AS a FROM a",
+        "CREATE VIEW v AS SELECT * FROM a, ogr_layer_Extent('{folder}/secret.csv')",
+    ],
+)
+def test_tables_of_sqlite_files(tmp_path, canary, definition, layer):
+    path = tmp_path / "a.sqlite"
+    FRAME.to_file(path, layer="a", driver="SQLite")
+    assert read_points(path, attributes=["a"]).attributes["a"].tolist() == [1, 2, 3]
+    text = definition.format(folder=canary.folder).replace("'", "''")
+    kind = "view" if " VIEW " in definition else "table"
+    execute(
+        path,
+        "INSERT INTO sqlite_master (type, name, tbl_name, rootpage, sql) "
+        f"VALUES ('{kind}', 'v', 'v', 0, '{text}')",
+        "INSERT INTO geometry_columns (f_table_name, f_geometry_column, geometry_type, "
+        "coord_dimension, srid, geometry_format) VALUES ('v', 'GEOMETRY', 1, 2, 28992, 'WKB')",
+    )
+    canary.watch()
+    with pytest.raises(FileFormatError, match="table or view 'v'"):
+        read_points(path, layer=layer)
+    assert not canary.was_opened
+
+
+def test_databases_have_their_own_suffix(package, tmp_path):
+    package.rename(tmp_path / "b.sqlite")
+    FRAME.to_file(tmp_path / "c.sqlite", driver="SQLite")
+    (tmp_path / "c.sqlite").rename(tmp_path / "c.gpkg")
+    for name in ("b.sqlite", "c.gpkg"):
+        with pytest.raises(FileFormatError, match="it does not begin like one"):
+            read_points(tmp_path / name)
 
 
 def test_functions_in_columns(package, canary):

@@ -33,11 +33,18 @@ def frame(geometries, **columns):
     return geopandas.GeoDataFrame(columns, geometry=geometries, crs="EPSG:28992")
 
 
-@pytest.mark.parametrize("suffix", [".gpkg", ".geojson", ".parquet"])
+def save(data, file):
+    if file.suffix == ".parquet":
+        data.to_parquet(file)
+    else:
+        data.to_file(file, **({"driver": "SQLite"} if file.suffix == ".sqlite" else {}))
+
+
+@pytest.mark.parametrize("suffix", [".gpkg", ".sqlite", ".geojson", ".parquet"])
 def test_all_kinds(tmp_path, suffix):
     file = tmp_path / f"a{suffix}"
     data = frame(SHAPES, height=[1.5, 2.5, 3.5])
-    data.to_parquet(file) if suffix == ".parquet" else data.to_file(file)
+    save(data, file)
     found = read_geometries(file, columns=["height"])
     assert shapely.equals_exact(found.geometries, SHAPES).all()
     assert found.feature_heights.tolist() == [1.5, 2.5, 3.5]
@@ -46,11 +53,11 @@ def test_all_kinds(tmp_path, suffix):
     assert found.areas.tolist() == [SHAPES[0]]
 
 
-@pytest.mark.parametrize("suffix", [".gpkg", ".geojson", ".parquet"])
+@pytest.mark.parametrize("suffix", [".gpkg", ".sqlite", ".geojson", ".parquet"])
 def test_further_columns(tmp_path, suffix):
     file = tmp_path / f"a{suffix}"
     data = frame(SHAPES, height=[1.5, 2.5, 3.5], name=["a", "b", "c"], number=[7, 8, 9])
-    data.to_parquet(file) if suffix == ".parquet" else data.to_file(file)
+    save(data, file)
     found = read_geometries(file, attributes="all").attributes
     assert {name: values.tolist() for name, values in found.items()} == {
         "height": [1.5, 2.5, 3.5],

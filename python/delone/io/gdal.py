@@ -4,7 +4,7 @@ GDAL chooses a driver by the contents of a file. Some drivers read virtual datas
 service descriptions, which open other files and send requests, and pyogrio has no option to
 restrict the drivers. Therefore a binary file must begin as its suffix says, in a way that no other
 driver accepts, and JSON is opened with a prefix that leaves GDAL one driver. References that
-GeoJSON and GeoPackage themselves can contain are checked before GDAL opens the file.
+GeoJSON, GeoPackage and SQLite files can contain are checked before GDAL opens the file.
 """
 
 from __future__ import annotations
@@ -36,12 +36,14 @@ DRIVERS = {
     ".geojson": "GeoJSON",
     ".json": "GeoJSON",
     ".gpkg": "GPKG",
+    ".sqlite": "SQLite",
     ".shp": "ESRI Shapefile",
     ".fgb": "FlatGeobuf",
 }
 _SHAPEFILE, _SQLITE = b"\x00\x00\x27\x0a", b"SQLite format 3\x00"
 # "Application ids" of GeoPackage 1.0, 1.1 and later, at byte 68.
 _GEOPACKAGES = (b"GP10", b"GP11", b"GPKG")
+_DATABASES = ("GPKG", "SQLite")
 # GDAL treats longer headers of FlatGeobuf as corrupt. Shorter ones have a zero byte in their size,
 # which ends the search of other drivers for their keywords.
 _LONGEST_HEADER = 10 << 20
@@ -57,7 +59,7 @@ _USUAL = re.compile(
 _KINDS = ("name", "epsg", "ogc")
 # Files with the same name in the same folder that GDAL and SQLite read.
 _COMPANIONS = {
-    "GPKG": ("-wal", "-shm", "-journal"),
+    **dict.fromkeys(_DATABASES, ("-wal", "-shm", "-journal")),
     "ESRI Shapefile": (
         *(".shx", ".dbf", ".prj", ".cpg", ".qix", ".sbn", ".sbx", ".idm", ".ind"),
         *(".SHX", ".DBF", ".PRJ", ".CPG", ".QIX", ".SBN", ".SBX", ".IDM", ".IND"),
@@ -99,10 +101,10 @@ def admitted(path: Path) -> Iterator[str]:
         return
     _check_beginning(path)
     require_companions(path, _COMPANIONS.get(driver, ()))
-    if driver == "GPKG":
+    if driver in _DATABASES:
         _check_tables(path)
     notes = path.with_name(path.name + ".aux.xml")
-    if driver != "GPKG" or not os.path.lexists(notes):
+    if driver not in _DATABASES or not os.path.lexists(notes):
         yield local_name(path)
         return
     # GDAL follows references in its .aux.xml files; it does not find them in another folder.
@@ -161,13 +163,13 @@ def _check_beginning(path: Path) -> None:
         size = int.from_bytes(head[8:12], "little")
         right = head[:4] == b"fgb\x03" and head[4:7] == b"fgb" and 4 <= size <= _LONGEST_HEADER
     else:
-        right = head.startswith(_SQLITE) and head[68:72] in _GEOPACKAGES
+        right = head.startswith(_SQLITE) and (head[68:72] in _GEOPACKAGES) == (suffix == ".gpkg")
     if not right:
         raise FileFormatError(f"{path} is not a {suffix} file: it does not begin like one")
 
 
 def _check_tables(path: Path) -> None:
-    """Reject a GeoPackage with tables or views that SQLite alone cannot read, or cannot finish.
+    """Reject a database with tables or views that SQLite alone cannot read, or cannot finish.
 
     GDAL's functions and virtual tables open files; SQLite here has none, so it rejects their use.
     """

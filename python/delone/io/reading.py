@@ -56,9 +56,9 @@ def read_points(
     ----------
     path : str or path-like
         CSV, TSV, TXT, XYZ, PTS, DAT or GeoJSON (these also .gz, .xz, .bz2), npy, npz, LAS, LAZ,
-        GeoPackage, Shapefile, FlatGeobuf, Parquet, GeoParquet, Arrow, Feather, LandXML, DXF, the
-        cells of GeoTIFF, ESRI ASCII grids and NetCDF (`read_raster`), the vertices of a mesh, or
-        the file ``ept.json`` of Entwine Point Tiles (EPT).
+        GeoPackage, SQLite, Shapefile, FlatGeobuf, Parquet, GeoParquet, Arrow, Feather, LandXML,
+        DXF, the cells of GeoTIFF, ESRI ASCII grids and NetCDF (`read_raster`), the vertices of a
+        mesh, or the file ``ept.json`` of Entwine Point Tiles (EPT).
     columns : sequence of str or int, optional
         Columns of x, y and (optionally) z, by name or by number from 0. By default columns are
         recognized by their names; without names the first two or three are used, unless the first
@@ -202,8 +202,8 @@ def read_geometries(
     Parameters
     ----------
     path : str or path-like
-        GeoJSON (also .gz, .xz, .bz2), GeoPackage, Shapefile, FlatGeobuf or GeoParquet; the lines of
-        LandXML and DXF.
+        GeoJSON (also .gz, .xz, .bz2), GeoPackage, SQLite, Shapefile, FlatGeobuf or GeoParquet; the
+        lines of LandXML and DXF.
     columns : sequence of str or int, optional
         The one attribute that is the height of each feature, as for contour lines. By default
         heights are those of the coordinates, if any.

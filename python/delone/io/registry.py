@@ -53,7 +53,7 @@ READERS = {
     **dict.fromkeys((".csv", ".tsv", ".txt", ".xyz", ".pts", ".dat"), "text"),
     **dict.fromkeys((".npy", ".npz"), "arrays"),
     **dict.fromkeys((".las", ".laz"), "las"),
-    **dict.fromkeys((*_JSON, ".gpkg", ".shp", ".fgb"), "vector"),
+    **dict.fromkeys((*_JSON, ".gpkg", ".sqlite", ".shp", ".fgb"), "vector"),
     **dict.fromkeys((".parquet", ".arrow", ".feather"), "parquet"),
     **dict.fromkeys(READ_MESHES, "mesh"),
     **dict.fromkeys(TRIANGLE, "triangle"),
