@@ -132,7 +132,7 @@ class RegularTriangulation(PointTriangulation):
         if workers is not None:
             as_workers(workers)
         if own.shape[1] > _SPACE:
-            require_room(own, None)
+            require_room(own, None, limited=False)
         arrays, chain = triangulated(own, own_weights, workers)
         if not len(arrays["simplices"]):
             raise _degenerate(own, chain)

@@ -268,14 +268,29 @@ def test_three_points_span_a_plane() -> None:
         assert np.array_equal(again.simplices, mesh.simplices)
         # Two points are on a line, and without the argument, three rows of five columns are
         # probably three lists of coordinates.
-        with pytest.raises(delone.DegenerateInputError, match="three that are not on one line"):
-            Delaunay(points[:2], flat="project")
-        with pytest.raises(delone.DegenerateInputError, match="three that are not on one line"):
-            ConvexHull(np.outer(np.arange(3.0), np.ones(d)), flat="project")
-        with pytest.raises(delone.ShapeError, match="transpose it"):
-            Delaunay(points)
-        with pytest.raises(delone.ShapeError, match="transpose it"):
-            ConvexHull(points)
+        needs = "; simplices in a flat need three that are not on one line"
+        line = np.outer(np.arange(3.0), np.ones(d))
+        for made in (Delaunay, ConvexHull):
+            with pytest.raises(delone.DegenerateInputError) as caught:
+                made(points[:2], flat="project")
+            assert str(caught.value) == f"all points are on one line, through rows 0 and 1{needs}"
+            with pytest.raises(delone.DegenerateInputError, match=f"on one line, .*{needs}$"):
+                made(line, flat="project")
+            with pytest.raises(delone.DegenerateInputError) as caught:
+                made(points[[1, 1]], flat="project")
+            assert str(caught.value) == f"all points are equal to row 0{needs}"
+            with pytest.raises(delone.DegenerateInputError) as caught:
+                made(points[:0], flat="project")
+            assert str(caught.value) == f"there are no points{needs}"
+            advice = 'transpose it, or if these are three points, pass flat="project"$'
+            with pytest.raises(delone.ShapeError, match=advice):
+                made(points)
+            # Two points have no triangle, and no class takes more columns.
+            for wrong in (points[:2], np.eye(3, 9)):
+                with pytest.raises(delone.ShapeError, match=r"transpose it$"):
+                    made(wrong)
+        with pytest.raises(delone.ShapeError, match=r"transpose it$"):
+            delone.Voronoi(points)
 
 
 def test_files_pickles_and_faults(tmp_path: Path) -> None:

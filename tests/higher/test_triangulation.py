@@ -227,7 +227,7 @@ def test_advice_is_about_the_dimension() -> None:
 
 def test_bad_points_are_refused_by_rows() -> None:
     points = some(6, 8)
-    with pytest.raises(delone.ShapeError, match="with d from 2 to 8, got \\(24, 9\\)"):
+    with pytest.raises(delone.ShapeError, match=r"got \(24, 9\); to interpolate .* use .*Linear"):
         Delaunay(np.ones((24, 9)))
     with pytest.raises(delone.DegenerateInputError, match="5 distinct points are too few") as few:
         Delaunay(points[:5])

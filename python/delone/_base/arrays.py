@@ -34,6 +34,8 @@ _FLOAT64 = np.dtype(np.float64)
 _INT32 = np.dtype(np.int32)
 # Every integer of at most this magnitude is a float64; the next one, 2**53 + 1, is not.
 _LARGEST_EXACT_INTEGER = 2**53
+# Points with more columns are interpolated, but not triangulated.
+_MOST_COLUMNS = 8
 _LARGEST_INDEX = 2**31 - 1
 # A larger limit has no effect: no call adds more points than an int32 can number.
 LARGEST_LIMIT = 2**31 - 1
@@ -70,13 +72,14 @@ def as_points(
     ndim: int | None = None,
     most: int = 3,
     name: str = "points",
-    few: bool = False,
+    few: bool | None = None,
 ) -> NDArray[np.float64]:
     """Return points as a C-contiguous float64 array with exactly the values given, including NaN.
 
     From 2 to `most` columns from anything array-like; `ndim` requires a number. Two or three rows
-    of more columns are only taken for points with `few`. No copy is made if none is needed, so the
-    result may be the input itself, even if read-only: never modify it.
+    of more columns are only taken for points with `few`; if that is False, the error says how to
+    pass three points. No copy is made if none is needed, so the result may be the input itself,
+    even if read-only: never modify it.
     """
     wanted = range(2, most + 1) if ndim is None else (ndim,)
     if _is_right(points, wanted) and (few or not _is_across(points, wanted)):
@@ -507,7 +510,7 @@ def _refuse_kind(array: NDArray[Any], name: str) -> None:
 
 
 def _refuse_shape(
-    array: NDArray[Any], wanted: Sequence[int], name: str, *, few: bool = False
+    array: NDArray[Any], wanted: Sequence[int], name: str, *, few: bool | None = None
 ) -> None:
     if array.ndim == 2 and array.shape[1] in wanted and (few or not _is_across(array, wanted)):
         return
@@ -517,6 +520,11 @@ def _refuse_shape(
     hint = ""
     if array.ndim == 2 and (array.shape[0] in wanted or _is_across(array, wanted)):
         hint = "; transpose it"
+        if few is False and len(array) == 3 and array.shape[1] in wanted:
+            hint += ', or if these are three points, pass flat="project"'
+    elif array.ndim == 2 and array.shape[1] > wanted[-1] == _MOST_COLUMNS:
+        hint = "; to interpolate between points with more coordinates, use "
+        hint += "delone.interpolate.Linear, which does not triangulate them"
     raise ShapeError(f"{name} must have shape {shapes}, got {array.shape}{hint}")
 
 

@@ -14,6 +14,8 @@ __all__ = ["agreed", "counted", "gigabytes", "grouped", "listed"]
 
 # Larger numbers are shown in scientific notation.
 _HUGE = 10**15
+# Fewer GB are shown in MB.
+_SMALL = 0.05
 # Nouns that do not take an s.
 _MANY = {
     "tetrahedron": "tetrahedra",
@@ -45,6 +47,8 @@ def grouped(count: int) -> str:
 
 
 def gigabytes(size: int) -> str:
-    """Return a number of bytes in GB, with its unit."""
+    """Return a number of bytes in GB, or if it is small in MB, with its unit."""
+    if size < _SMALL * 10**9:
+        return f"{size / 10**6:,.3g} MB"
     shown = f"{size / 10**9:,.1f}" if size < _HUGE * 10**9 else grouped(size // 10**9)
     return f"{shown} GB"

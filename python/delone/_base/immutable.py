@@ -133,7 +133,7 @@ def sealed(array: NDArray[Any]) -> NDArray[Any]:
 
 
 def own_copy(
-    points: ArrayLike, *, ndim: int | None = 2, most: int = 3, few: bool = False
+    points: ArrayLike, *, ndim: int | None = 2, most: int = 3, few: bool | None = None
 ) -> NDArray[np.float64]:
     """Return points, like `as_points`, that cannot be changed, even while the core runs."""
     array = as_points(points, ndim=ndim, most=most, few=few)

@@ -60,8 +60,13 @@ class Flat:
 
 def flat_of(points: Floats, error: DegenerateInputError) -> Flat:
     """Return the flat of points; raise the error, and say so, if they are on one line."""
-    if len(error.chain) <= _LEAST:
-        error.args = (f'{error}; with flat="project", three that are not on one line are enough',)
+    rows = error.chain.tolist()
+    if len(rows) <= _LEAST:
+        if len(rows) == _LEAST:
+            what = f"all points are on one line, through rows {rows[0]} and {rows[1]}"
+        else:
+            what = f"all points are equal to row {rows[0]}" if rows else "there are no points"
+        error.args = (f"{what}; simplices in a flat need three that are not on one line",)
         raise error
     return Flat(points, error.chain)
 

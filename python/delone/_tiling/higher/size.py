@@ -48,10 +48,12 @@ def peak_bytes(simplices: int, d: int) -> int:
     return int(simplices * (_GROWTH * record + 2 * _ROW * (d + 1)))
 
 
-def require_room(points: Floats, max_bytes: int | None, *, hull: bool = False) -> None:
+def require_room(
+    points: Floats, max_bytes: int | None, *, hull: bool = False, limited: bool = True
+) -> None:
     """Raise TooLargeError if a triangulation, or a hull, would need more than `max_bytes`.
 
-    The default is the free memory.
+    The default is the free memory. Classes that are not `limited` have no argument `max_bytes`.
     """
     n, d = points.shape
     limit = free_memory() if max_bytes is None else _as_bytes(max_bytes)
@@ -69,9 +71,11 @@ def require_room(points: Floats, max_bytes: int | None, *, hull: bool = False) -
         else "use fewer points or coordinates, or for interpolation "
         'delone.interpolate.Linear(method="lazy"), which needs no triangulation'
     )
+    if limited:
+        advice += f", or pass max_bytes to {'ConvexHull' if hull else 'Delaunay'}"
     raise TooLargeError(
         f"the {what[1]} of {grouped(n)} points in {d}-D would have about {grouped(found)} "
-        f"{what[0]} and take {gigabytes(needed)}, but {known}; {advice}, or pass max_bytes",
+        f"{what[0]} and take {gigabytes(needed)}, but {known}; {advice}",
         simplices=found,
         nbytes=needed,
         limit=limit,
