@@ -275,3 +275,38 @@ def test_a_page_without_pictures_of_nothing(hill, command, tmp_path):
     assert site._rows({"a_b": None, "c_d": 1234}) == [("c d", "1,234")]
     code, _, err = command("terrain", hill, "--contours", 1000, "-o", tmp_path / "site")
     assert code == 0, err
+
+
+def test_contours_on_the_page_keep_their_ends_and_shapes():
+    from matplotlib.figure import Figure
+
+    from delone.cli.site import _RUN, _draw_contours
+
+    x = np.linspace(0, 20, 120)
+    random = np.random.default_rng(2)
+    heights = np.sin(x)[:, None] * np.cos(x) + random.random((120, 120)) / 5
+    grid = np.stack((*np.meshgrid(x, x), heights), axis=-1)
+    found = TIN.from_points(grid.reshape(-1, 3)).contours(interval=0.05)
+    assert len(found.points) > 2 * _RUN and found.index.any()
+    for size, least in ((1e-9, 1.0), (0.1, 0.2)):
+        ax = Figure().add_subplot()
+        _draw_contours(found, size, ax)
+        lines = {False: [], True: []}
+        for drawn in ax.collections:
+            wide = drawn.get_linewidths()[0] > 1
+            assert all(len(path.vertices) <= _RUN for path in drawn.get_paths())
+            # The last point of an artist is the first of the next one.
+            parts = [path.vertices for path in drawn.get_paths()]
+            points = np.concatenate([parts[0], *(each[1:] for each in parts[1:])])
+            breaks = np.flatnonzero(np.isnan(points[:, 0]))
+            lines[wide] = [part[~np.isnan(part[:, 0])] for part in np.split(points, breaks)]
+        for wide in (False, True):
+            rows = np.flatnonzero(found.index == wide)
+            assert len(lines[wide]) == len(rows)
+            for k, line in zip(rows, lines[wide], strict=True):
+                whole = found.coordinates(k)
+                assert (line[0] == whole[0]).all() and (line[-1] == whole[-1]).all()
+        count = sum(len(line) for both in lines.values() for line in both)
+        assert least * len(found.points) <= count <= len(found.points)
+        assert size > 0.01 or count == len(found.points)
+        assert size < 0.01 or count < 0.8 * len(found.points)

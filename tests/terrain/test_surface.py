@@ -338,3 +338,21 @@ def test_a_line_outside_has_an_empty_profile_and_says_so():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert len(tin.profile([(-1, -1), (60, 60)]))
+
+
+@pytest.mark.parametrize("what", ["slope", "aspect", "hillshade"])
+def test_rasters_of_triangles_are_those_of_the_triangles(monkeypatch, what):
+    from delone.terrain import slopes
+
+    monkeypatch.setattr(slopes, "_BLOCK", 500)
+    random = np.random.default_rng(3)
+    points = np.column_stack((1e5 + random.random((300, 2)) * 90, random.random(300) * 20))
+    points[:30, 2] = 7  # level triangles have no aspect
+    tin = TIN.from_points(points, max_edge=20)
+    light = {"azimuth": 100, "altitude": 20, "z_factor": 3} if what == "hillshade" else {}
+    found = tin.raster(what, resolution=1.7, **light)
+    simplex = tin.find_simplex(np.stack(np.meshgrid(found.x, found.y), axis=-1))
+    of_triangles = tin.hillshade(**light) if light else getattr(tin, what)
+    right = np.where(simplex < 0, np.nan, of_triangles[simplex])
+    assert np.array_equal(found.values, right, equal_nan=True)
+    assert (simplex < 0).any() and len(np.unique(simplex)) > 200

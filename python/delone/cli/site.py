@@ -46,18 +46,22 @@ from delone.cli.terrain import write_lines
 from delone.errors import InputError
 from delone.io import read_geometries
 from delone.io.raster import raster_writer
+from delone.plot.lines import plot_lines
 from delone.terrain import difference
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from delone.terrain import TIN
+    from delone.interpolate import Grid
+    from delone.terrain import TIN, Contours
 
 __all__ = ["terrain"]
 
 _SHADES = ("hillshade", "slope", "aspect")
 # Cells along the longer side of the map of a page.
 _CELLS = 900
+# Points of one artist; the rasterizer of matplotlib refuses far longer ones.
+_RUN = 20_000
 _NO_SECTIONS = SectionOptions(
     interval=None, left=None, right=None, start=0.0, exaggeration=None, text_height=None
 )
@@ -172,7 +176,12 @@ def terrain(
 def _write_page(
     target: Path, source: Path, tin: TIN, figures: dict[str, Any], products: Sequence[_Product]
 ) -> None:
-    sections = [_overview(source, tin, figures), *(_section(tin, each) for each in products)]
+    # The cells of maps, which several sections show.
+    cells = tin.raster(resolution=float((tin.max_bound - tin.min_bound).max()) / _CELLS)
+    sections = [
+        _overview(source, tin, figures, cells),
+        *(_section(tin, each, cells) for each in products),
+    ]
     text = page(source.name, sections, f"Made by delone {__version__}")
     with writing(), replacing(target) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
@@ -342,7 +351,7 @@ def _rows(figures: dict[str, Any], before: str = "") -> list[tuple[str, str]]:
     return rows
 
 
-def _overview(source: Path, tin: TIN, figures: dict[str, Any]) -> Section:
+def _overview(source: Path, tin: TIN, figures: dict[str, Any], cells: Grid) -> Section:
     """Return the section on the surface itself: a shaded map, colored by height."""
     low, high = float(tin.z.min()), float(tin.z.max())
     told = {key: value for key, value in figures.items() if key not in _NOT_TOLD}
@@ -352,7 +361,8 @@ def _overview(source: Path, tin: TIN, figures: dict[str, Any]) -> Section:
         **{axis: f"{a:.10g} to {b:.10g}" for axis, (a, b) in zip("xy", bounds, strict=True)},
         "input": source.name,
     }
-    picture = _drawn(lambda ax: _map(tin, ax), wide=6.0)
+    label = "height" + (f" ({tin.units})" if tin.units else "")
+    picture = _drawn(lambda ax: cells.plot(ax, shade=True, label=label), wide=6.0)
     alt = f"Map of the heights of {source.name}, shaded"
     return Section("Surface", _rows(told), picture, alt)
 
@@ -360,25 +370,14 @@ def _overview(source: Path, tin: TIN, figures: dict[str, Any]) -> Section:
 _NOT_TOLD = ("input", "delone", "outputs", "output_bytes", "peak_memory_bytes")
 
 
-def _map(tin: TIN, ax: Any) -> None:
-    label = "height" + (f" ({tin.units})" if tin.units else "")
-    tin.raster(resolution=_cell(tin)).plot(ax, shade=True, label=label)
-
-
-def _cell(tin: TIN) -> float:
-    """Return the size of the cells of maps."""
-    return float((tin.max_bound - tin.min_bound).max()) / _CELLS
-
-
-def _section(tin: TIN, product: _Product) -> Section:
-    """Return the section on a product."""
+def _section(tin: TIN, product: _Product, cells: Grid) -> Section:
+    """Return the section on a product; `cells` are the heights on maps."""
     found, name = product.found, product.name
     files, rows = [path.name for path in product.files], _rows(product.figures)
     title = {"dem": "DEM"}.get(name, name[:1].upper() + name[1:])
     draw: Callable[[Any], Any] = found.plot if hasattr(found, "plot") else found
     wide, high, alt = 6.0, None, f"Map of the {title}"
     if product.goal is not None:
-        cells = tin.raster(resolution=_cell(tin))
         gaps = difference(cells, product.goal, crs=tin.crs, units=tin.units)
         if not np.isfinite(gaps.values).any():
             return Section(title, rows)
@@ -392,9 +391,32 @@ def _section(tin: TIN, product: _Product) -> Section:
         height = "height" + (f" ({tin.units})" if tin.units else "")
         label = {"dem": height, "hillshade": "brightness"}.get(name, f"{name} in degrees")
         draw = partial(found.plot, label=label, **options)
-    elif name not in ("contours", "bands"):
+    elif name == "contours":
+        size = float((tin.max_bound - tin.min_bound).max()) / (2 * _CELLS)
+        draw = partial(_draw_contours, found, size)
+    elif name != "bands":
         wide, high, alt = 9.0, 3.0, "Height over distance along the line"
     return Section(title, rows, _drawn(draw, wide=wide, high=high), alt, files)
+
+
+def _draw_contours(found: Contours, size: float, ax: Any) -> None:
+    """Draw contours, index contours wider, without the points that a picture cannot show.
+
+    Of consecutive points in a square of this size only the first is drawn, and the ends of lines.
+    Many lines are one artist, because matplotlib takes longer for artists than for points.
+    """
+    square = np.floor(found.points / size)
+    drawn = np.ones(len(square), dtype=bool)
+    drawn[1:] = (square[1:] != square[:-1]).any(axis=1)
+    drawn[found.starts[:-1]] = drawn[found.starts[1:] - 1] = True
+    line = np.repeat(np.arange(len(found)), np.diff(found.starts))
+    for wide in (False, True):
+        rows = np.flatnonzero(drawn & (found.index[line] == wide))
+        breaks = np.flatnonzero(np.diff(line[rows])) + 1
+        # NaN lifts the pen between two lines.
+        points = np.insert(found.points[rows], breaks, np.nan, axis=0)
+        runs = [points[start : start + _RUN] for start in range(0, len(points), _RUN - 1)]
+        plot_lines(runs, np.full(len(runs), 1.2 if wide else 0.5), ax)
 
 
 def _drawn(draw: Callable[[Any], Any], *, wide: float, high: float | None = None) -> bytes | None:

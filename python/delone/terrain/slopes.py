@@ -26,6 +26,7 @@ __all__ = [
     "gradient",
     "heights",
     "hillshade",
+    "measure",
     "normals",
     "raster",
     "slope",
@@ -135,20 +136,30 @@ def raster(tin: Surface, what: str, options: dict[str, Any]) -> Grid:
     x, y = _nodes(tin, options)
     require_memory(len(x), len(y), 1)
     values = np.empty((len(y), len(x)))
-    of_triangles = None
-    if what != "height":
-        of_triangles = tin.hillshade(**light) if what == "hillshade" else getattr(tin, what)
     rows = max(1, _BLOCK // len(x))
     for start in range(0, len(y), rows):
         nodes = np.stack(np.meshgrid(x, y[start : start + rows]), axis=-1)
-        if of_triangles is None:
-            values[start : start + rows] = tin.heights(nodes, tolerance=tolerance)
+        if what == "height":
+            found = tin.heights(nodes, tolerance=tolerance)
         else:
             simplex = tin.find_simplex(nodes, tolerance=tolerance)
-            values[start : start + rows] = np.where(simplex < 0, np.nan, of_triangles[simplex])
+            # Only triangles with a node: a surface may have many more triangles than nodes.
+            own, back = np.unique(simplex, return_inverse=True)
+            corners = tin.simplices[own].ravel()
+            triples = np.arange(len(corners)).reshape(-1, 3)
+            slopes = gradient(tin.points[corners], tin.z[corners], triples)
+            found = np.where(own < 0, np.nan, measure(slopes, what, light))[back]
+        values[start : start + rows] = found.reshape(-1, len(x))
         if tell is not None:
             tell(min(1.0, (start + rows) / len(y)))
     return Grid(values, x, y)
+
+
+def measure(slopes: Floats, what: str, light: dict[str, float]) -> Floats:
+    """Return the slope, the aspect or, with `light`, the brightness of planes."""
+    if what == "hillshade":
+        return hillshade(slopes, **light)
+    return slope(slopes) if what == "slope" else aspect(slopes)
 
 
 def _nodes(tin: Surface, options: dict[str, Any]) -> tuple[Floats, Floats]:

@@ -174,9 +174,9 @@ def _require_area(points: Floats, whose: str) -> None:
 
 
 def refuse_overflow(cut: Floats, fill: Floats) -> None:
-    """Reject volumes beyond the largest double."""
-    if np.isinf(cut).any() or np.isinf(fill).any():
-        raise _too_large("a volume exceeds")
+    """Reject volumes that are both beyond doubles: their difference would be NaN."""
+    if (np.isinf(cut) & np.isinf(fill)).any():
+        raise _too_large("cut and fill exceed")
 
 
 def _too_large(what: str) -> LimitError:

@@ -149,6 +149,5 @@ def _fill(  # noqa: PLR0917
 def _measure(tile: Tile, z: Floats, shown: Shown) -> Floats:
     """Return a measure of the triangles of a tile."""
     gradients = slopes.gradient(tile.points, np.ascontiguousarray(z), tile.simplices)
-    if shown.what == "hillshade":
-        return slopes.hillshade(gradients, *shown[1:])
-    return slopes.slope(gradients) if shown.what == "slope" else slopes.aspect(gradients)
+    light = shown._asdict()
+    return slopes.measure(gradients, light.pop("what"), light)
