@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from delone._base.types import Floats, Indices
 
-__all__ = ["Split", "split"]
+__all__ = ["Split", "in_order", "split"]
 
 # Maximum number of rounds in which parts of arcs cross again, each within the rounding error.
 _ROUNDS = 40
@@ -144,7 +144,7 @@ def _along(
     unsure = np.unique(part[second[~(value > 2.0**-44)]])
     for each in unsure.tolist():
         low, high = np.searchsorted(part, (each, each + 1))
-        stop[low:high] = _in_order(vectors, rows[each].tolist(), stop[low:high].tolist())
+        stop[low:high] = in_order(vectors, rows[each].tolist(), stop[low:high].tolist())
     return part, stop
 
 
@@ -157,7 +157,7 @@ def _scaled(vectors: Floats) -> Floats:
     return scaled
 
 
-def _in_order(vectors: Floats, ends: list[int], stops: list[int]) -> list[int]:
+def in_order(vectors: Floats, ends: list[int], stops: list[int]) -> list[int]:
     """Return the rows of crossings of an arc in their order along it, exactly."""
     u, v = vectors[ends].tolist()
     normal = cross(whole(u), whole(v))

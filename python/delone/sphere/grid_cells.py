@@ -16,6 +16,7 @@ from delone.errors import DirectionError, DtypeError, ShapeError
 from delone.sphere import rings as rings_of
 from delone.sphere.coordinates import as_step, lonlat_of, units_of
 from delone.sphere.grid_report import GridFaults, GridReport
+from delone.sphere.holes import Holes, holes_between_arcs, holes_between_rows
 from delone.sphere.large import LARGE, Parts, overlaps_of
 
 if TYPE_CHECKING:
@@ -274,8 +275,8 @@ class GridCells(Stored):
 
         Notes
         -----
-        This computes the overlaps of the grid with itself. Gaps are not faults: `covered` is the
-        fraction of the sphere that the cells cover.
+        This computes the overlaps of the grid with itself. Holes are not faults: a regional grid
+        has one, the rest of the sphere.
 
         Examples
         --------
@@ -290,7 +291,24 @@ class GridCells(Stored):
         pairs = np.column_stack((first, found.indices.astype(np.int64)))
         small = self.areas[pairs].min(axis=1)
         wrong = (pairs[:, 0] < pairs[:, 1]) & (found.areas > _SHARED * small)
-        return GridFaults(overlapping=pairs[wrong], covered=float(self.areas.sum() / (4 * np.pi)))
+        holes = Holes(None, (), 0) if wrong.any() else self._holes()
+        return GridFaults(
+            overlapping=pairs[wrong],
+            covered=float(self.areas.sum() / (4 * np.pi)),
+            holes=holes.number,
+            rims=holes.rims,
+            slivers=holes.slivers,
+        )
+
+    def _holes(self) -> Holes:
+        """Return the holes between cells that do not overlap."""
+        if self._edges == "parallel":
+            return holes_between_rows(self._arrays, self.areas)
+        if isinstance(self._made, Parts):
+            return holes_between_arcs(
+                self._made.arrays, self._made.owner, self.areas, self._workers
+            )
+        return holes_between_arcs(self._arrays, np.arange(self.ncells), self.areas, self._workers)
 
     def to_geopandas(self, data: Any = None, *, crs: Any = None, step: float = 1.0) -> Any:
         """Convert the cells to a GeoDataFrame (extra ``geo``).

@@ -77,6 +77,20 @@ class GridFaults(ReadOnly):
         Pairs of cells that share more than 1e-12 of the smaller one.
     covered : float
         The fraction of the sphere that the cells cover, where overlaps count twice.
+    holes : int or None
+        The number of holes: connected parts of the sphere outside all cells. Those that meet at a
+        corner are one. None if cells overlap.
+    rims : tuple of ndarray of int64
+        For each closed ring of sides that have a cell on one side only, the cells along it,
+        ascending. Cells that have no side in common, such as those of islands, have different
+        rings, so a hole can have several.
+    slivers : int
+        Closed rings around less than 1e-12 of the smallest cell along them, such as those between
+        cells whose corners are rounded. They are neither holes nor rims.
+
+    Notes
+    -----
+    Rings follow from common corners, and from corners in sides of other cells, by exact signs.
 
     Examples
     --------
@@ -86,10 +100,20 @@ class GridFaults(ReadOnly):
     >>> faults = grid.validate()
     >>> bool(faults), round(faults.covered, 12)
     (True, 0.5)
+
+    The rest of the sphere is a hole, and the cells of the southern row are along it:
+
+    >>> faults
+    <GridFaults: no cells overlap, 50 % of the sphere, 1 hole>
+    >>> faults.rims[0].tolist()
+    [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11]
     """
 
     overlapping: Rows
     covered: float
+    holes: int | None
+    rims: tuple[Rows, ...]
+    slivers: int
 
     def __bool__(self) -> bool:
         return not len(self.overlapping)
@@ -98,4 +122,9 @@ class GridFaults(ReadOnly):
         pairs = f"{counted(len(self.overlapping), 'pair')} of cells overlap"
         if not len(self.overlapping):
             pairs = "no cells overlap"
-        return f"<GridFaults: {pairs}, {100 * self.covered:.6g} % of the sphere>"
+        more = "".join(
+            f", {counted(count, what)}"
+            for count, what in ((self.holes, "hole"), (self.slivers, "sliver"))
+            if count
+        )
+        return f"<GridFaults: {pairs}, {100 * self.covered:.6g} % of the sphere{more}>"

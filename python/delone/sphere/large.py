@@ -82,7 +82,8 @@ class Parts:
         # The cell of each part.
         self.owner = number[first]
         starts = np.append(first, len(holes)).astype(np.int64)
-        self.core = _core.CellGrid.polygons(vectors, rings, starts, holes)
+        self.arrays = vectors, rings, starts, holes
+        self.core = _core.CellGrid.polygons(*self.arrays)
 
     def check(self, crossing: bool, workers: int) -> _Checked:
         """Return the results for each cell."""

@@ -149,6 +149,9 @@ def _meridians(edges: Floats) -> tuple[Floats, NDArray[np.int32]]:
     lon = np.append(west, edges[-1])
     places = np.column_stack((lon, np.zeros(len(lon))))
     directions = _core.sphere_directions(places, True, as_workers(None))[:, :2]
+    if lon[-1] == lon[0] + 360:
+        # The sum is rounded, but a full turn ends where it starts.
+        directions[-1] = directions[0]
     return np.ascontiguousarray(directions), np.append(number, np.int32(-1))
 
 

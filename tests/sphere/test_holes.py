@@ -1,0 +1,288 @@
+"""Holes in the coverage of grids, against graphs of the cells that are left out."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import combinations, pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from delone import sphere
+from delone.sphere import Grid
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from delone._base.types import Floats
+
+    Box = tuple[Fraction, Fraction, int]
+
+
+def parts(count: int, pairs: Iterable[tuple[int, int]]) -> int:
+    """The number of connected parts of a graph, one node at a time."""
+    near: list[list[int]] = [[] for _ in range(count)]
+    for a, b in pairs:
+        near[a].append(b)
+        near[b].append(a)
+    seen, found = set(), 0
+    for first in range(count):
+        found += first not in seen
+        todo = [first]
+        while todo:
+            at = todo.pop()
+            if at not in seen:
+                seen.add(at)
+                todo += near[at]
+    return found
+
+
+def meet(a: set[Any], b: set[Any]) -> bool:
+    return bool(a & b)
+
+
+def checked(grid: Grid, left_out: list[int], touch: Callable[[int, int], int]) -> None:
+    """Compare with a graph; `touch` is 0 for cells apart, 1 at a corner, 2 along a side."""
+    faults = grid.validate()
+    assert faults
+    rest = [k for k in range(grid.ncells + len(left_out)) if k not in set(left_out)]
+    joined = [(i, j) for i, j in combinations(range(len(rest)), 2) if touch(rest[i], rest[j]) == 2]
+    outside = combinations(range(len(left_out)), 2)
+    meeting = [(i, j) for i, j in outside if touch(left_out[i], left_out[j])]
+    assert faults.holes == parts(len(left_out), meeting)
+    assert len(faults.rims) == faults.holes + parts(len(rest), joined) - 1
+    beside = {i for i, k in enumerate(rest) if any(touch(k, m) == 2 for m in left_out)}
+    assert set(np.concatenate([*faults.rims, []]).astype(int).tolist()) == beside
+    assert faults.slivers == 0
+    assert all((np.diff(rim) > 0).all() for rim in faults.rims)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.4, 0.7])
+@pytest.mark.parametrize("name", ["healpix", "voronoi", "curvilinear"])
+def test_cells_with_common_corners(name: str, share: float) -> None:
+    rng = np.random.default_rng(int(10 * share))
+    sites = rng.normal(size=(150, 3))
+    whole = {
+        "healpix": lambda: Grid.from_healpix(4),
+        "voronoi": lambda: Grid.from_voronoi(sphere.Voronoi(xyz=sites)),
+        "curvilinear": lambda: Grid.from_curvilinear(
+            *np.meshgrid(np.arange(0, 361, 30), np.arange(-90, 91, 15))
+        ),
+    }[name]()
+    vectors, starts, _ = whole.rings
+    rings = [[tuple(v) for v in vectors[a:b].tolist()] for a, b in pairwise(starts)]
+    corners = [set(ring) for ring in rings]
+    count = len(rings)
+    left_out = np.flatnonzero(rng.random(count) < share).tolist()
+    kept = [k for k in range(count) if k not in left_out]
+    ends = np.cumsum([0, *(len(rings[k]) for k in kept)])
+    turned = [rings[k][:: rng.choice([-1, 1])] for k in kept]
+    grid = Grid.from_mesh(np.concatenate(turned), ends, merge=0)
+    checked(grid, left_out, lambda a, b: min(len(corners[a] & corners[b]), 2))
+
+
+def boxes_of(numbers: list[int]) -> list[Box]:
+    """West and width of each cell as parts of a turn, and its row."""
+    return [
+        (Fraction(k, n), Fraction(1, n), row) for row, n in enumerate(numbers) for k in range(n)
+    ]
+
+
+def touching(a: Box, b: Box, rows: int) -> int:
+    """0 for cells apart, 1 for those with a common point, 2 for those with a common side."""
+    if abs(a[2] - b[2]) > 1:
+        return 0
+    if a[2] == b[2]:
+        beside = (a[0] + a[1] - b[0]) % 1 == 0 or (b[0] + b[1] - a[0]) % 1 == 0
+        return 2 if beside else int(a[2] in {0, rows - 1})
+    ahead, behind = (b[0] - a[0]) % 1, (a[0] - b[0]) % 1
+    if ahead < a[1] or behind < b[1]:
+        return 2
+    return int(ahead == a[1] or behind == b[1])
+
+
+@pytest.mark.parametrize("share", [0.1, 0.4, 0.7])
+@pytest.mark.parametrize(
+    "numbers", [[3, 7, 7, 3], [4, 8, 12, 18, 18, 9, 6, 6], [6], [5, 5], [1, 4, 8, 3, 1]]
+)
+def test_rows_with_corners_in_sides(numbers: list[int], share: float) -> None:
+    xarray = pytest.importorskip("xarray")
+    rng = np.random.default_rng(int(10 * share))
+    cells = boxes_of(numbers)
+    left_out = np.flatnonzero(rng.random(len(cells)) < share).tolist()
+    kept = rng.permutation([k for k in range(len(cells)) if k not in left_out]).tolist()
+    lat = np.linspace(-90, 90, len(numbers) + 1)
+    west = np.array([float(360 * cells[k][0]) for k in kept])
+    east = np.array([float(360 * (cells[k][0] + cells[k][1])) for k in kept])
+    south, north = (lat[[cells[k][2] + up for k in kept]] for up in (0, 1))
+    coords = {}
+    for name, low, high, unit in (
+        ("lon", west, east, "degrees_east"),
+        ("lat", south, north, "degrees_north"),
+    ):
+        coords[name] = ("cell", (low + high) / 2, {"units": unit, "bounds": f"{name}_bnds"})
+        coords[f"{name}_bnds"] = (("cell", "two"), np.column_stack((low, high)), {})
+    grid = Grid.from_dataset(xarray.Dataset(coords=coords))
+    assert grid.edges == "parallel"
+    order = {k: i for i, k in enumerate(kept)}
+    names = [*kept, *left_out]
+    again = [names.index(k) for k in left_out]
+    assert sorted(again) == list(range(len(order), len(names)))
+    rows = len(numbers)
+    checked(grid, again, lambda a, b: touching(cells[names[a]], cells[names[b]], rows))
+
+
+def quad(west: float, south: float, east: float, north: float) -> list[tuple[float, float]]:
+    return [(west, south), (east, south), (east, north), (west, north)]
+
+
+@pytest.mark.parametrize("turn", [0, 1, 2])
+def test_corners_in_arcs(turn: int) -> None:
+    # A frame whose sides are on the equator and on a meridian, and a bridge across its hole whose
+    # corners are in these sides, but not at their ends.
+    frame = [
+        quad(-30, -30, 30, 0),
+        quad(-60, 0, -30, 40),
+        quad(-30, 40, 30, 60),
+        quad(30, 0, 60, 40),
+    ]
+    link = [quad(-30, -30, -60, 0)[::1], quad(30, -30, 60, 0)]
+    top = [quad(-60, 40, -30, 60), quad(30, 40, 60, 60)]
+    bridge = [(-10, 0), (10, 0), (10, 20), (-10, 20)]
+    beside = [(-30, 0), (-10, 0), (-10, 20), (-30, 20)]
+
+    def holes(cells: list[Any]) -> int | None:
+        vectors = sphere.Delaunay(lonlat=np.concatenate(cells)).vectors
+        vectors = np.roll(vectors, turn, axis=1).reshape(-1, 4, 3)
+        faults = Grid.from_mesh(vectors).validate()
+        assert faults.slivers == 0
+        return faults.holes
+
+    ring = frame + link + top
+    assert holes(ring) == 2
+    # Joined in the middle of a side, it is no island.
+    assert holes([*ring, bridge]) == 2
+    assert len(Grid.from_mesh(lonlat=np.array([*ring, bridge])).validate().rims) == 2
+    # From the equator to the meridian of 30 degrees west.
+    assert holes([*ring, bridge, beside]) == 2
+
+
+def test_a_bridge_between_sides() -> None:
+    # Two cells on the equator, and one on the meridian of 90 degrees, that no corners connect.
+    low = [(0, -30), (80, -30), (80, 0), (0, 0)]
+    high = [(90, 5), (130, 5), (130, 70), (90, 80)]
+    middle = [(70, 0), (90, 10), (90, 20), (60, 0)]
+    for cells, holes, rims in (
+        ([low, high], 1, 2),
+        ([low, high, middle], 1, 1),
+        ([low, middle], 1, 1),
+        ([high, middle], 1, 1),
+    ):
+        faults = Grid.from_mesh(lonlat=cells).validate()
+        assert (faults.holes, len(faults.rims)) == (holes, rims)
+    # A second bridge closes a ring.
+    second = [(20, 0), (90, 40), (90, 50), (10, 0)]
+    faults = Grid.from_mesh(lonlat=[low, high, middle, second]).validate()
+    assert (faults.holes, [rim.tolist() for rim in faults.rims]) == (2, [[0, 1, 2, 3]] * 2)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_corners_that_rounding_puts_beside_a_side(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    a, b, far, near = np.array([(1.0, 0, 0), (0, 1, 0), (1, 1, 1), (1, 1, -1)])
+    a, b = a + 0.3 * rng.normal(size=3), b + 0.3 * rng.normal(size=3)
+    c, d = 0.7 * a + 0.3 * b, 0.3 * a + 0.7 * b
+    cells = np.array([(far, a, b), (near, c, a), (near, d, c), (near, b, d)])
+    for order in ([0, 1, 2, 3], [3, 1, 2, 0]):
+        faults = Grid.from_mesh(cells[order], merge=0).validate()
+        assert faults
+        # Corners exactly on the side leave no sliver.
+        assert faults.slivers <= 1
+        assert faults.holes == 1
+        assert [rim.tolist() for rim in faults.rims] == [[0, 1, 3]]
+    # A gap of a thousandth of a side is none.
+    gap = 1e-3 * (near - far)
+    cells[1, 1] += gap
+    cells[2, 2] += gap
+    faults = Grid.from_mesh(cells, merge=0).validate()
+    assert (faults.holes, len(faults.rims), faults.slivers) == (1, 2, 0)
+
+
+def test_a_refined_region_leaves_no_hole() -> None:
+    # Corners in the middle of sides are rounded, all around the region.
+    rng = np.random.default_rng(0)
+    turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    lon, lat = np.meshgrid(np.arange(-3, 4) / 6, np.arange(-3, 4) / 6)
+    place = np.dstack((np.ones_like(lon), lon, lat)) @ turn
+
+    def cells(p: Floats) -> Floats:
+        return np.stack((p[:-1, :-1], p[:-1, 1:], p[1:, 1:], p[1:, :-1]), axis=2).reshape(-1, 4, 3)
+
+    inner = place[1:6, 1:6]
+    fine = np.empty((9, 9, 3))
+    fine[::2, ::2] = inner
+    fine[1::2, ::2] = (inner[:-1] + inner[1:]) / 2
+    fine[:, 1::2] = (fine[:, :-1:2] + fine[:, 2::2]) / 2
+    coarse = cells(place).reshape(6, 6, 4, 3)
+    outer = np.ones((6, 6), dtype=bool)
+    outer[1:5, 1:5] = False
+    grid = Grid.from_mesh(np.concatenate((coarse[outer], cells(fine))))
+    faults = grid.validate()
+    assert (faults.holes, len(faults.rims)) == (1, 1)
+    assert 0 < faults.slivers <= 16
+    assert "1 hole, " in repr(faults)
+    assert len(faults.rims[0]) == 20
+
+
+def test_cells_of_several_rings() -> None:
+    shapely = pytest.importorskip("shapely")
+    hole = quad(2, 2, 4, 4)
+    cells = [shapely.Polygon(quad(0, 0, 10, 10), [hole, quad(6, 6, 8, 8)])]
+    faults = Grid.from_polygons(cells).validate()
+    assert (faults.holes, [rim.tolist() for rim in faults.rims]) == (3, [[0]] * 3)
+    faults = Grid.from_polygons([*cells, shapely.Polygon(hole)]).validate()
+    assert (faults.holes, [rim.tolist() for rim in faults.rims]) == (2, [[0]] * 2)
+    # An island in the hole is a second ring around the same part of the sphere.
+    faults = Grid.from_polygons([*cells, shapely.box(2.5, 2.5, 3, 3)]).validate()
+    assert (faults.holes, len(faults.rims)) == (3, 4)
+    apart = shapely.MultiPolygon([shapely.box(0, 0, 9, 9), shapely.box(180, 0, 190, 9)])
+    faults = Grid.from_polygons([apart, shapely.box(80, 0, 90, 9)]).validate()
+    assert (faults.holes, [rim.tolist() for rim in faults.rims]) == (1, [[0], [0], [1]])
+    # An ocean as one cell: its holes are the land.
+    land = [quad(0, 0, 20, 20), quad(60, -20, 90, 0)]
+    ocean = shapely.Polygon([(0, -65), (120, -65), (240, -65)], land)
+    faults = Grid.from_polygons([ocean], winding="ccw").validate()
+    assert (faults.holes, [rim.tolist() for rim in faults.rims]) == (3, [[0]] * 3)
+
+
+def test_without_cells_and_with_overlaps() -> None:
+    point = [(0, 0), (10, 0), (0, 0), (10, 0)]
+    faults = Grid.from_mesh(lonlat=[point]).validate()
+    assert (faults.holes, faults.rims) == (1, ())
+    two = Grid.from_mesh(lonlat=[quad(0, 0, 10, 10), quad(5, 0, 15, 10)]).validate()
+    assert not two
+    assert (two.holes, two.rims, two.slivers) == (None, (), 0)
+    assert "hole" not in repr(two)
+    assert Grid.from_mesh(lonlat=[quad(0, 0, 9, 9), quad(9, 9, 19, 19)]).validate().holes == 1
+
+
+def test_vectors_of_different_lengths() -> None:
+    vectors: Floats = np.array(
+        [(1, 2, 3), (3, 2, 1), (2, 5, 1), (3, 6, 9), (9, 6, 3), (4, -1, 2.0)]
+    )
+    cells = vectors.reshape(2, 3, 3)
+    assert len(Grid.from_mesh(cells, merge=0).validate().rims) == 1
+
+
+@pytest.mark.parametrize("n", [4, 16])
+def test_grids_of_the_library_have_no_holes(n: int) -> None:
+    for grid in (
+        Grid.from_gaussian(n, "octahedral"),
+        Grid.from_gaussian(n),
+        Grid.from_healpix(n),
+        Grid.from_lonlat(np.linspace(-180, 180, 3 * n + 1) + 0.1, np.linspace(-90, 90, n)),
+    ):
+        faults = grid.validate()
+        assert (faults.holes, faults.rims, faults.slivers) == (0, (), 0)
+        assert "hole" not in repr(faults)
