@@ -220,3 +220,24 @@ def test_what_is_refused(model, command, arguments, code, message):
     assert found == code, err
     assert message in err
     assert out == ""
+
+
+def test_pictures_of_fields_on_other_dimensions(tmp_path, command):
+    # The mesh is in one file, and the field in another one, which calls its cells differently.
+    pytest.importorskip("matplotlib")
+    mesh, field = tmp_path / "mesh.nc", tmp_path / "field.nc"
+    places = {"units": "degrees"}
+    corners = np.array([[(0, 0), (10, 0), (10, 9)], [(0, 0), (10, 9), (0, 9)]], dtype=float)
+    names = ("grid_size", "grid_corners")
+    xarray.Dataset(
+        {
+            "grid_corner_lon": (names, corners[..., 0], places),
+            "grid_corner_lat": (names, corners[..., 1], places),
+        }
+    ).to_netcdf(mesh)
+    xarray.Dataset({"psi": ("ncol", [1.0, 2.0])}).to_netcdf(field)
+    options = str(field), "30x30", "--grid", str(mesh), "-o", str(tmp_path / "maps.png")
+    code, _, errors = command("regrid", *options)
+    assert code == 2
+    assert "grid of 2 cells; variables have {'psi': {'ncol': 2}}: give their" in errors
+    assert command("regrid", *options, "--dims", "ncol")[0] == 0

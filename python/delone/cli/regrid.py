@@ -269,7 +269,13 @@ def _draw(path: Path, regridder: Any, fields: Any, found: Any) -> None:
     figures = require("matplotlib.figure", extra="plot", what="drawing")
     names = _regridded(regridder, fields, found)
     if not names:
-        raise Failure("there is no field to draw", Exit.USAGE)
+        sizes = {str(n): dict(part.sizes) for n, part in list(fields.data_vars.items())[:3]}
+        shape = " x ".join(map(str, regridder.source.grid_shape))
+        raise Failure(
+            f"no field to draw is on the grid of {shape} cells; variables have {sizes!r:.200}: "
+            "give their dimensions as --dims",
+            Exit.USAGE,
+        )
     before, after = fields[names[0]], found[names[0]]
     own = regridder.source_dims or before.dims[before.ndim - len(regridder.source.grid_shape) :]
     maps = 2 if regridder.weights.method in {"sum", "majority"} else 3
