@@ -77,6 +77,7 @@ EXPECTED_SKIPS = {
     ("tests/sphere/test_map_files.py*", "could not import 'uxarray'*"): "it has many requirements",
     ("tests/sphere/test_map_files.py*", "could not import 'xesmf'*"): "it needs ESMF, of no index",
     ("tests/sphere/test_map_files.py*", "could not find the program ncks"): "NCO is on no index",
+    ("tests/sphere/test_map_files.py*", "could not find the program cdo"): "CDO is on no index",
     ("tests/sphere/test_map_files.py*", "could not import 'yac.core'*"): "it needs an MPI library",
     ("tests/distributed/test_resume.py*", "root may write anywhere"): "containers run as root",
     (

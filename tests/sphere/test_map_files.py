@@ -290,6 +290,38 @@ def test_nco_applies_maps(
     assert off[:, 1].max() < 1e-9
 
 
+def run_cdo(cdo: str, *words: str) -> None:
+    subprocess.run([cdo, "-O", *words], check=True, capture_output=True)
+
+
+@pytest.mark.parametrize("method", ["conservative", "normalized"])
+def test_cdo_applies_maps_and_its_maps_are_read(tmp_path: Path, method: str) -> None:
+    cdo = shutil.which("cdo")
+    if cdo is None:
+        pytest.skip("could not find the program cdo")
+    xarray = pytest.importorskip("xarray")
+    given, out, table = (str(tmp_path / name) for name in ("in.nc", "out.nc", "map.nc"))
+    source = Grid.from_lonlat(np.arange(0, 361, 10), np.arange(-90, 91, 10))
+    target = Grid.from_lonlat(np.arange(0, 361, 5), np.arange(-90, 91, 6))
+    field = field_on(source).reshape(source.grid_shape)
+    lon, lat = np.arange(5.0, 360, 10), np.arange(-85.0, 90, 10)
+    coords = {
+        "lon": ("lon", lon, {"units": "degrees_east", "standard_name": "longitude"}),
+        "lat": ("lat", lat, {"units": "degrees_north", "standard_name": "latitude"}),
+    }
+    xarray.Dataset({"t": (("lat", "lon"), field)}, coords=coords).to_netcdf(given)
+    weights = Overlaps(source, target).to_weights(method)
+    weights.to_netcdf(table, source=source, target=target, layout="scrip")
+    run_cdo(cdo, f"remap,r72x30,{table}", given, out)
+    with netcdf.Dataset(out) as file:
+        assert np.allclose(file["t"][:], weights.apply(field), rtol=1e-14, atol=1e-14)
+    run_cdo(cdo, "gencon,r72x36", given, table)
+    run_cdo(cdo, f"remap,r72x36,{table}", given, out)
+    again = Weights.from_netcdf(table)
+    with netcdf.Dataset(out) as file:
+        assert np.allclose(file["t"][:], again.apply(field), rtol=1e-14, atol=1e-14)
+
+
 @pytest.mark.parametrize("target", [ROWS, REGION, MESH])
 def test_xesmf_applies_maps(tmp_path: Path, target: Grid) -> None:
     # Its module of matrices alone, because the package needs ESMF.
