@@ -216,7 +216,7 @@ def test_volumes_beyond_doubles_are_refused(size: float) -> None:
     shift = np.random.default_rng(6).uniform(-size, size, 30) / 2
     others = TIN.from_points(points + np.column_stack((0 * shift, 0 * shift, shift)))
     for other in (size / 2, (0.1, 0.0, size / 2), others):
-        with pytest.raises(LimitError, match="exceed the largest double: give coordinates in a larger unit"):
+        with pytest.raises(LimitError, match="exceed the largest double: give coordinates"):
             tin.volume_to(other)
     with pytest.raises(LimitError, match="larger unit"):
         tin.volumes_to(size / 2, [[(0, 0), (size, 0), (size, size), (0, size)]])

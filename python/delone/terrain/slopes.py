@@ -146,7 +146,7 @@ def raster(tin: Surface, what: str, options: dict[str, Any]) -> Grid:
             # Only triangles with a node: a surface may have many more triangles than nodes.
             own, back = np.unique(simplex, return_inverse=True)
             corners = tin.simplices[own].ravel()
-            triples = np.arange(len(corners)).reshape(-1, 3)
+            triples = np.arange(len(corners), dtype=np.int32).reshape(-1, 3)
             slopes = gradient(tin.points[corners], tin.z[corners], triples)
             found = np.where(own < 0, np.nan, measure(slopes, what, light))[back]
         values[start : start + rows] = found.reshape(-1, len(x))
