@@ -1,9 +1,9 @@
 """SciPy's own tests of qhull's classes, as installed, run against the drop-ins.
 
 Nothing of SciPy's text is here: its test module is loaded a second time, the name through which it
-reaches SciPy's classes is replaced, and each test that uses one of them in the plane or in space
-is run. Where a test also visits other dimensions, SciPy does those; each test must have reached
-delone.
+reaches SciPy's classes is replaced, and each test that uses one of them with two to eight
+coordinates is run. Where a test also has more, SciPy does those; each test must have reached
+delone. The guide to the drop-ins lists the tests that cannot hold.
 """
 
 from __future__ import annotations
@@ -113,7 +113,7 @@ def parameters(function: Callable[..., Any]) -> list[tuple[str, dict[str, Any]]]
 
 
 def cases(module: ModuleType) -> Iterator[Any]:
-    """All tests of SciPy that call one of the drop-ins, in the plane or in space."""
+    """All tests of SciPy that call one of the drop-ins."""
     for name, item in vars(module).items():
         if name.startswith("test_") and callable(item):
             yield from _runs(name, item, lambda function: function)

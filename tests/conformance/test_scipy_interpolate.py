@@ -1,7 +1,7 @@
 """SciPy's own tests of its interpolators, as installed, run against the drop-ins.
 
 Nothing of SciPy's text is here: its test modules are loaded a second time, the names through which
-they reach SciPy's classes are replaced, and each test in the plane is run; each must reach delone.
+they reach SciPy's classes are replaced, and each test is run; each must reach delone.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ CANNOT_HOLD = {
     ),
 }
 
-# Tests that are not of the plane, or ask for more than a test may take.
+# Tests of one dimension, or that ask for more than a test may take.
 LEFT_OUT = {
     "TestGriddata::test_1d*": "points on a line",
     "TestLinearNDInterpolation::test_threading": "asks for 10 GB of free memory",
