@@ -28,6 +28,7 @@ except ImportError as error:
 from delone import predicates
 from delone._base.georeference import CRSWarning, GeographicWarning
 from delone._base.units import UnitsWarning
+from delone._tiling.higher.thin import NearlyFlatWarning
 from delone._tiling.plane.quality import Quality
 from delone._tiling.space.quality import TetQuality
 from delone.delaunay import Delaunay
@@ -150,6 +151,7 @@ __all__ = [
     "Mesh",
     "MeshReport",
     "MissingExtraError",
+    "NearlyFlatWarning",
     "NonFiniteError",
     "OpenSurfaceError",
     "OutputError",

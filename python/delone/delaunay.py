@@ -16,6 +16,7 @@ from delone._base.immutable import own_copy
 from delone._tiling.higher.dimension import MOST
 from delone._tiling.higher.flats import Flat, advised, flat_of
 from delone._tiling.higher.size import require_room
+from delone._tiling.higher.thin import warn_of_rounding
 from delone._tiling.space.plane import plane_of
 from delone._tiling.triangulation import PointTriangulation
 from delone.errors import DegenerateInputError, DtypeError, InputError, InternalError
@@ -138,6 +139,8 @@ class Delaunay(PointTriangulation):
     -----
     GeographicWarning
         The points are known to be longitudes and latitudes; see `planar`.
+    NearlyFlatWarning
+        From 4-D on: the points lie in a flat except for rounding errors.
 
     Notes
     -----
@@ -249,6 +252,8 @@ class Delaunay(PointTriangulation):
         except InternalError as error:
             error.points = own
             raise
+        if _MANY <= own.shape[1] < arrays["simplices"].shape[1]:
+            warn_of_rounding(own)
         self._fill({"points": own} | arrays, stages, workers)
         self._refer(points)
 

@@ -21,6 +21,7 @@ from delone._tiling.higher.dimension import MOST
 from delone._tiling.higher.flats import axes_of
 from delone._tiling.higher.hull import hull_arrays
 from delone._tiling.higher.size import require_room
+from delone._tiling.higher.thin import warn_of_rounding
 from delone._tiling.plane import geometry as plane
 from delone._tiling.plane.topology import vertex_to_simplex
 from delone._tiling.space import geometry as space
@@ -138,6 +139,11 @@ class ConvexHull(Complex):
     KeyboardInterrupt
         Ctrl-C was pressed. No partial result remains.
 
+    Warns
+    -----
+    NearlyFlatWarning
+        From 4-D on: the points lie in a flat except for rounding errors.
+
     See Also
     --------
     Delaunay.convex_hull : The boundary of a triangulation, in which all points on it are vertices.
@@ -218,6 +224,8 @@ class ConvexHull(Complex):
             error = InternalError("the hull of points that span a simplex is flat")
             error.points = own
             raise error
+        if own.shape[1] == arrays["simplices"].shape[1] and own.shape[1] not in _ARRAYS_OF:
+            warn_of_rounding(own)
         without = {"inside": np.empty(0, dtype=np.int32)}
         self._fill(without | arrays | {"points": own}, {}, workers)
         self._refer(points)

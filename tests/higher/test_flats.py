@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import warnings
 from fractions import Fraction
 from itertools import combinations
 from pathlib import Path
@@ -344,3 +345,35 @@ def test_errors_name_it_and_what_it_cannot_do() -> None:
         Linear(mesh, points[:, 0])
     with pytest.raises(delone.InputError, match="points of the triangulation lie in a flat"):
         delone.AlphaComplex(mesh)
+
+
+def test_points_that_rounding_takes_out_of_a_flat_are_told() -> None:
+    random = np.random.default_rng(5)
+    fractions = random.dirichlet(np.ones(5), 60)
+    told = "in a flat of dimension 4 except for rounding errors, .* 5-D .* for example column 4,"
+    for made in (Delaunay, ConvexHull):
+        with pytest.warns(delone.NearlyFlatWarning, match=told) as caught:
+            assert made(fractions).simplices.shape[1] > 4
+        assert caught[0].filename == __file__
+        with pytest.warns(delone.NearlyFlatWarning, match=told):
+            made(fractions, flat="project")
+    # A column that depends on some others, in other units, far from the origin.
+    points = random.random((40, 6)) * [1, 1e-6, 1e6, 1, 1, 1] + [0, 0, 0, 0, 1e3, 0]
+    points[:, 2] = points[:, 1] * 2.54e6 - points[:, 4] / 3
+    with pytest.warns(delone.NearlyFlatWarning, match="for example column [124],"):
+        Delaunay(points)
+    # Flats that are asked for, and points that span all dimensions by more than rounding.
+    whole = random.integers(0, 9, (40, 5)).astype(float)
+    whole[:, 4] = 30 - whole[:, :4].sum(axis=1)
+    thin = random.random((60, 5)) * [1, 1, 1, 1, 1e-9]
+    noisy = fractions + 1e-13 * random.random((60, 5))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for made in (Delaunay, ConvexHull):
+            made(whole, flat="project")
+            made(fractions[:, :4])
+            made(fractions[:, :3])
+            made(thin)
+            made(noisy)
+            made(np.vstack((np.zeros(5), np.eye(5))))
+            made(1e300 * random.random((12, 5)))
