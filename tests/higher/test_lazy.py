@@ -9,8 +9,9 @@ import pytest
 
 import delone
 from delone import Delaunay, _core
+from delone._base import blocks
 from delone.compat import scipy
-from delone.interpolate import Linear
+from delone.interpolate import Linear, lazily
 
 
 def clouds(d: int) -> dict[str, np.ndarray]:
@@ -161,3 +162,27 @@ def test_drop_ins_need_no_triangulation() -> None:
         scipy.LinearNDInterpolator(points * np.append(np.ones(9), 0), values)
     with pytest.raises(scipy.DimensionError, match="up to 64"):
         scipy.LinearNDInterpolator(random.random((80, 65)), np.zeros(80))
+
+
+def test_values_and_gradients_do_not_depend_on_the_size_of_blocks(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    random = np.random.default_rng(8)
+    grid = np.stack(np.meshgrid(*4 * [[0.0, 1.0, 3.0]]), axis=-1).reshape(-1, 4)
+    for points, method in (
+        (random.random((60, 4)), "lazy"),
+        (random.random((60, 4)), "mesh"),
+        (random.random((60, 9)), "lazy"),
+        (grid, "grid"),
+    ):
+        field = Linear(points, random.random((len(points), 2)), method=method)
+        corners = random.dirichlet(np.ones(len(points)), 40) @ points
+        # Queries outside as well, so that rows in blocks are not rows of queries.
+        queries = np.where(random.random((40, 1)) < 0.2, 5.0, corners)
+        values, gradients = field(queries), field.gradient(queries)
+        assert np.isnan(values).any()
+        with monkeypatch.context() as patch:
+            patch.setattr(blocks, "ROWS", 7)
+            patch.setattr(lazily, "ROWS", 7 * points.shape[1] ** 2)
+            assert np.array_equal(field(queries), values, equal_nan=True)
+            assert np.array_equal(field.gradient(queries), gradients, equal_nan=True)
