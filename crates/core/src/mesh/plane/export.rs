@@ -17,6 +17,9 @@ pub(super) const OUTSIDE: Code = Code::MAX;
 
 /// Triangles per task.
 const SHARE: usize = 1 << 12;
+/// One in so many shares is packed first. With a fourth, 12 of 64 bytes per vertex are written
+/// before 16 are returned, and the peak stays that of the build; with a second it would be higher.
+const LAST: usize = 4;
 /// Triangles whose marks are read between two checks for interruption.
 const LOT: usize = 1 << 16;
 
@@ -86,9 +89,57 @@ fn write(
     watch: &Watch,
 ) -> Result<Arrays<3>> {
     let mut corners = mesh.into_words();
-    let words = corners.as_flattened_mut();
     let mut neighbors = zeroed(count)?;
-    let tasks = words[..RECORD * count]
+    // The last records are packed first and their memory is returned, so that the array of
+    // neighbors, which is filled at the same time, needs no more than the build did.
+    let kept = match count / SHARE {
+        shares if shares >= LAST => (shares - shares / LAST) * SHARE,
+        _ => count,
+    };
+    let (first_neighbors, last_neighbors) = neighbors.split_at_mut(kept);
+    let mut last: Vec<[u32; 3]> = with_room(count - kept)?;
+    if kept < count {
+        let records = &mut corners.as_flattened_mut()[RECORD * kept..RECORD * count];
+        pack_all(records, last_neighbors, rows, workers, watch)?;
+        for share in records.chunks(RECORD * SHARE) {
+            watch.check()?;
+            let packed = share.as_chunks::<3>().0;
+            last.extend_from_slice(&packed[..share.len() / RECORD]);
+        }
+        corners.truncate((RECORD * kept).div_ceil(3));
+        corners.shrink_to_fit();
+    }
+    let words = corners.as_flattened_mut();
+    pack_all(
+        &mut words[..RECORD * kept],
+        first_neighbors,
+        rows,
+        workers,
+        watch,
+    )?;
+    for first in (SHARE..kept).step_by(SHARE) {
+        watch.check()?;
+        let from = RECORD * first;
+        words.copy_within(from..from + 3 * SHARE.min(kept - first), 3 * first);
+    }
+    corners.truncate(count);
+    corners[kept..].copy_from_slice(&last);
+    corners.shrink_to_fit();
+    Ok(Arrays {
+        simplices: signed(corners),
+        neighbors,
+    })
+}
+
+/// Packs each share of `records`.
+fn pack_all(
+    records: &mut [u32],
+    neighbors: &mut [[i32; 3]],
+    rows: &[u32],
+    workers: usize,
+    watch: &Watch,
+) -> Result<()> {
+    let tasks = records
         .chunks_mut(RECORD * SHARE)
         .zip(neighbors.chunks_mut(SHARE))
         .collect();
@@ -96,17 +147,7 @@ fn write(
         pack(records, neighbors, rows);
         Ok(())
     })?;
-    for first in (SHARE..count).step_by(SHARE) {
-        watch.check()?;
-        let from = RECORD * first;
-        words.copy_within(from..from + 3 * SHARE.min(count - first), 3 * first);
-    }
-    corners.truncate(count);
-    corners.shrink_to_fit();
-    Ok(Arrays {
-        simplices: signed(corners),
-        neighbors,
-    })
+    Ok(())
 }
 
 /// Writes the neighbors of the triangles in `records`, and moves their corners, as rows, to the front
