@@ -38,10 +38,9 @@
 //! v - 4 records, where v is the number of its new neighbors, so all insertions make at most n^2, and
 //! none is removed more than once: the work is bounded by the largest size of a 3-D triangulation.
 
-use std::hint::select_unpredictable;
-
 use delone_predicates::{Point3, Sign, insphere_canonical, orient3d};
 
+use super::heights::Heights;
 use super::lattice;
 use super::sphere::{
     Facets, LANES, RANGE, Ray, Rays, SLACK, Sphere, UNKNOWN, power, sphere, spheres,
@@ -58,16 +57,20 @@ const RIM: usize = 2 * STAR;
 /// No record.
 const NONE: u32 = u32::MAX;
 
+/// Marks: nothing is known;
+const OPEN: u8 = 0;
+/// in the cavity;
+const TAKEN: u8 = 1;
+/// predicates have decided that it is not.
+const SPARED: u8 = 2;
+
 /// Arrays that grow with the mesh. To be allocated by the thread that starts the others, see
 /// [`crate::order::space::Room3`].
 #[derive(Debug)]
 pub struct Room {
-    /// The sphere of each record.
-    pub spheres: Vec<Sphere>,
-    /// 2 p + 1 if p is the vertex that last found the record in conflict, 2 p if predicates have
-    /// decided that it is not. Separate from the spheres: a store to part of one would stall the
-    /// next load of the whole.
-    mark: Vec<u32>,
+    /// What is known of each record during an insertion: [`OPEN`] before and after. Separate from
+    /// the spheres: a store to part of one would stall the next load of the whole.
+    mark: Vec<u8>,
     /// The index of each vertex in the star of the vertex inserted last, if it is in it.
     place: Vec<u8>,
 }
@@ -76,7 +79,6 @@ impl Room {
     /// Room for this many records and vertices, which touches no page.
     pub fn of(records: usize, vertices: usize) -> Result<Self> {
         Ok(Self {
-            spheres: with_room(records)?,
             mark: with_room(records)?,
             place: with_room(vertices + 1)?,
         })
@@ -88,12 +90,16 @@ pub struct Kernel<'a> {
     points: &'a [Point3],
     mesh: Mesh3<'a>,
     spheres: Vec<Sphere>,
-    mark: Vec<u32>,
+    mark: Vec<u8>,
+    /// Whether a record is marked [`SPARED`].
+    any_spared: bool,
     place: Vec<u8>,
     /// Added to each radius: NaN if the coordinates are out of the range of spheres, else 0.
     doubt: f64,
     /// Whether the points lie on a small lattice.
     small: bool,
+    /// Heights of the points above a sphere that is near all of them.
+    heights: Option<Heights>,
     /// The records in conflict, each by the facet through which it was reached.
     cavity: Vec<Code>,
     /// The boundary facets of the cavity, seen from inside.
@@ -118,33 +124,43 @@ struct Star {
 
 impl<'a> Kernel<'a> {
     /// A kernel in the empty `mesh` over `points`, which end with NaN for infinity. It starts from
-    /// the positively oriented tetrahedron `first`.
+    /// the positively oriented tetrahedron `first`, and uses the memory of `spheres`.
     pub fn start(
         points: &'a [Point3],
         mut mesh: Mesh3<'a>,
         room: Room,
+        mut spheres: Vec<Sphere>,
         first: [u32; 4],
     ) -> Result<Self> {
         mesh.first(first)?;
         let bound = 2f64.powi(RANGE);
         let coordinates = points[..points.len() - 1].as_flattened();
         let certain = coordinates.iter().all(|x| x.abs() < bound);
+        let finite = &points[..points.len() - 1];
+        let small = certain && lattice::is_small(finite);
+        let heights = if certain && !small {
+            Heights::of(finite)?
+        } else {
+            None
+        };
         let Room {
-            mut spheres,
             mut mark,
             mut place,
         } = room;
+        spheres.clear();
         spheres.resize(mesh.records(), UNKNOWN);
-        mark.resize(mesh.records(), NONE);
+        mark.resize(mesh.records(), OPEN);
         place.resize(points.len(), 0);
         Ok(Self {
             points,
             mesh,
             spheres,
             mark,
+            any_spared: false,
             place,
             doubt: if certain { 0.0 } else { f64::NAN },
-            small: certain && lattice::is_small(&points[..points.len() - 1]),
+            small,
+            heights,
             cavity: filled(RIM, 0)?,
             rim: filled(RIM, 0)?,
             star: boxed(Star {
@@ -166,23 +182,9 @@ impl<'a> Kernel<'a> {
         self.work
     }
 
-    /// The mesh, and the sphere of each record.
-    pub fn finish(self) -> (Mesh3<'a>, Room) {
-        let Self {
-            mesh,
-            spheres,
-            mark,
-            place,
-            ..
-        } = self;
-        (
-            mesh,
-            Room {
-                spheres,
-                mark,
-                place,
-            },
-        )
+    /// The mesh, and the sphere of each record; the rest is dropped.
+    pub fn finish(self) -> (Mesh3<'a>, Vec<Sphere>) {
+        (self.mesh, self.spheres)
     }
 
     #[inline]
@@ -271,7 +273,7 @@ impl<'a> Kernel<'a> {
     #[inline(always)]
     fn carve(&mut self, p: u32, seed: u32) -> Result<(usize, usize)> {
         let q = self.at(p);
-        self.mark[seed as usize] = 2 * p + 1;
+        self.mark[seed as usize] = TAKEN;
         self.cavity[0] = 4 * seed;
         let mut ends = (1, 0);
         let mut next = 0;
@@ -288,10 +290,27 @@ impl<'a> Kernel<'a> {
                 grow(&mut self.rim)?;
             }
             if next == ends.0 {
-                self.work += next;
-                return Ok(ends);
+                break;
             }
         }
+        self.work += next;
+        for &e in &self.cavity[..next] {
+            self.mark[tetrahedron(e) as usize] = OPEN;
+        }
+        if self.any_spared {
+            self.unmark_spared(ends.1);
+        }
+        Ok(ends)
+    }
+
+    /// Records that are spared are across the boundary.
+    #[cold]
+    #[inline(never)]
+    fn unmark_spared(&mut self, rims: usize) {
+        for &e in &self.rim[..rims] {
+            self.mark[tetrahedron(self.mesh.opposite(e)) as usize] = OPEN;
+        }
+        self.any_spared = false;
     }
 
     /// Adds the record across facet `e` to the cavity, or `e` to its boundary.
@@ -310,10 +329,10 @@ impl<'a> Kernel<'a> {
         if !certain {
             conflict = self.uncertain(other as u32, p);
         }
-        let (mark, taken) = (self.mark[other], 2 * p + 1);
-        self.mark[other] = select_unpredictable(conflict, taken, mark);
+        let mark = self.mark[other];
+        self.mark[other] = mark | u8::from(conflict);
         self.cavity[*gone] = across;
-        *gone += usize::from(conflict & (mark != taken));
+        *gone += usize::from(conflict & (mark != TAKEN));
         self.rim[*rims] = e;
         *rims += usize::from(!conflict);
     }
@@ -323,11 +342,14 @@ impl<'a> Kernel<'a> {
     #[inline(never)]
     fn uncertain(&mut self, t: u32, p: u32) -> bool {
         let mark = self.mark[t as usize];
-        if mark >> 1 == p {
-            return mark & 1 == 1;
+        if mark != OPEN {
+            return mark == TAKEN;
         }
         let conflict = self.view().conflicts_exactly(t, p);
-        self.mark[t as usize] = if conflict { mark } else { 2 * p };
+        if !conflict {
+            self.mark[t as usize] = SPARED;
+            self.any_spared = true;
+        }
         conflict
     }
 
@@ -441,7 +463,7 @@ impl<'a> Kernel<'a> {
         }
         for _ in self.spheres.len()..self.mesh.records() {
             push(&mut self.spheres, UNKNOWN)?;
-            push(&mut self.mark, NONE)?;
+            push(&mut self.mark, OPEN)?;
         }
         for i in rims..gone {
             self.mesh.release(tetrahedron(self.cavity[i]));
@@ -499,6 +521,7 @@ impl<'a> Kernel<'a> {
             mesh: &self.mesh,
             spheres: &self.spheres,
             small: self.small,
+            heights: self.heights.as_ref(),
         }
     }
 }
@@ -510,6 +533,7 @@ struct View<'a> {
     mesh: &'a Mesh3<'a>,
     spheres: &'a [Sphere],
     small: bool,
+    heights: Option<&'a Heights>,
 }
 
 impl View<'_> {
@@ -529,6 +553,11 @@ impl View<'_> {
         let corners = self.mesh.corners(t);
         let Some(k) = self.mesh.infinite_corner(t) else {
             let [a, b, c, d] = corners;
+            let heights = self.heights;
+            let by_height = heights.and_then(|h| h.insphere(self.points, [a, b, c, d, p]));
+            if let Some(sign) = by_height {
+                return sign == Sign::Positive;
+            }
             let [a, b, c, d] = [at(a), at(b), at(c), at(d)];
             let sign = if self.small {
                 lattice::insphere_canonical([a, b, c, d, at(p)])

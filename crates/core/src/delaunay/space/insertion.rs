@@ -5,6 +5,7 @@ use delone_predicates::{Point3, Sign, orient3d};
 use super::cavity::{Kernel, Room};
 use super::dispatch;
 use super::rounds::STRIDES;
+use super::sphere::Sphere;
 use crate::base::error::Result;
 use crate::base::points::collinear;
 use crate::base::watch::Watch;
@@ -12,18 +13,20 @@ use crate::mesh::space::Mesh3;
 use crate::order::Rounds;
 
 /// Fills the empty `mesh` with the triangulation of `points`, which end with NaN for infinity, and
-/// returns it with its spheres in `room`; `None` if the points span no tetrahedron.
+/// returns it with the sphere of each record, in the memory of `spheres`; `None` if the points span
+/// no tetrahedron.
 pub fn build<'a>(
     points: &'a [Point3],
     mesh: Mesh3<'a>,
     room: Room,
+    spheres: Vec<Sphere>,
     watch: &Watch,
-) -> Result<Option<(Mesh3<'a>, Room)>> {
+) -> Result<Option<(Mesh3<'a>, Vec<Sphere>)>> {
     let n = points.len() as u32 - 1;
     let Some(first) = first_tetrahedron(&points[..n as usize]) else {
         return Ok(None);
     };
-    let mut kernel = Kernel::start(points, mesh, room, first)?;
+    let mut kernel = Kernel::start(points, mesh, room, spheres, first)?;
     dispatch::run(&mut kernel, points, first, watch)?;
     Ok(Some(kernel.finish()))
 }

@@ -6,6 +6,7 @@
 
 mod cavity;
 mod dispatch;
+mod heights;
 mod insertion;
 mod join;
 mod lattice;

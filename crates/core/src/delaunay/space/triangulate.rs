@@ -3,12 +3,15 @@
 //! A large set is split into blocks, which threads triangulate in parallel and `seam` joins. The
 //! blocks depend on the points only, so the arrays are the same for any number of threads.
 
+use std::sync::Mutex;
+
 use delone_predicates::Point3;
 
 use super::cavity::Room;
 use super::insertion;
 use super::join::{Fitted, join};
 use super::seam::{Block, Seam, Surroundings, belonging, joints};
+use super::sphere::Sphere;
 use crate::base::arrays::Arrays;
 use crate::base::error::{Error, Result};
 use crate::base::memory::{is_plausible, with_room};
@@ -242,6 +245,11 @@ impl Task<'_> {
         }
         let mut records = Records::with_room(room)?;
         let meshes = records.meshes(&rooms);
+        // One array of spheres for each thread, used for one block after another: the first touch of
+        // its memory takes as long as a tenth of the insertions.
+        let most = rooms.iter().map(|&(room, _)| room).max().unwrap_or(0);
+        let idle = (0..self.workers.clamp(1, parts.len())).map(|_| with_room(most));
+        let idle = Mutex::new(idle.collect::<Result<Vec<Vec<Sphere>>>>()?);
         // Each task gets its own slices of the records, so blocks share no mutable state.
         let mut tasks = Vec::with_capacity(parts.len());
         for (((i, part), mesh), &(room, vertices)) in
@@ -258,12 +266,18 @@ impl Task<'_> {
                     cell: cuts.map_or(Extent3::EVERYWHERE, |cuts| cuts.cell(i)),
                     others: [&boxes[..i], &boxes[i + 1..]].concat(),
                 };
-                let Some((mesh, room)) = insertion::build(&part.points, mesh, room, self.watch)?
+                let spheres = idle.lock().ok().and_then(|mut idle| idle.pop());
+                let spheres = spheres.unwrap_or_default();
+                let (points, watch) = (&part.points[..], self.watch);
+                let Some((mesh, made)) = insertion::build(points, mesh, room, spheres, watch)?
                 else {
                     return Ok(None);
                 };
-                let rows = part.rows.clone();
-                Block::sift(&part.points, rows, &mesh, &room.spheres, &around).map(Some)
+                let block = Block::sift(points, part.rows.clone(), &mesh, &made, &around)?;
+                if let Ok(mut idle) = idle.lock() {
+                    idle.push(made);
+                }
+                Ok(Some(block))
             },
         )?;
         let blocks: Option<Vec<Block>> = made.into_iter().collect();
@@ -317,7 +331,7 @@ impl Task<'_> {
 /// triangulation would grow until the system ends the process.)
 fn check_memory(room: usize) -> Result<()> {
     /// Corners, facets, sphere and mark of a record.
-    const RECORD: usize = 16 + 16 + 32 + 4;
+    const RECORD: usize = 16 + 16 + 32 + 1;
     let bytes = room * RECORD;
     if is_plausible(bytes) {
         Ok(())
