@@ -74,8 +74,8 @@ pub fn dual(
         facet,
         ..Dual::default()
     };
-    let numbers = facets.ridges(&tied, &mut made, &mut pace)?;
-    facets.cells(vectors.len(), &numbers, &mut made, &mut pace)?;
+    let numbers = facets.ridges(&tied, &mut made, workers, watch)?;
+    facets.cells(vectors.len(), &numbers, &mut made, workers, watch)?;
     Ok(made)
 }
 
@@ -144,26 +144,63 @@ impl Facets<'_> {
         Ok((vertex, facet))
     }
 
-    /// Adds the ridges; returns the ridge of each edge of facets.
-    fn ridges(&self, tied: &[u8], made: &mut Dual, pace: &mut Pace) -> Result<Vec<[u32; 3]>> {
-        let mut numbers = filled(tied.len(), [NONE; 3])?;
-        let most = self.simplices.len() / 2 * 3;
-        made.around = with_room(most)?;
-        made.ends = with_room(most)?;
-        for t in 0..tied.len() {
-            pace.spend(1)?;
-            for k in 0..3 {
-                let other = self.neighbors[t][k] as usize;
-                if other < t || tied[t] >> k & 1 == 1 {
-                    continue;
-                }
-                let number = made.around.len() as u32;
-                numbers[t][k] = number;
-                numbers[other][self.back(t, other)?] = number;
-                push(&mut made.around, self.around(t, k)?)?;
-                push(&mut made.ends, [made.vertex[t], made.vertex[other]])?;
-            }
+    /// Whether a ridge is dual to the edge opposite corner k of facet t, and belongs to t: of the two
+    /// facets it is the one with the smaller number.
+    #[inline]
+    fn owns(&self, tied: &[u8], t: usize, k: usize) -> bool {
+        self.neighbors[t][k] as usize >= t && tied[t] >> k & 1 == 0
+    }
+
+    /// Adds the ridges; returns the ridge of each edge of facets that owns one.
+    fn ridges(
+        &self,
+        tied: &[u8],
+        made: &mut Dual,
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<Vec<[u32; 3]>> {
+        let count = tied.len();
+        let shares = || (0..count).step_by(SHARE);
+        let counts = parallel::map_watched(workers, shares().collect(), watch, |from| {
+            let share = from..count.min(from + SHARE);
+            let owned = |t: usize| (0..3).filter(|&k| self.owns(tied, t, k)).count();
+            Ok(share.map(owned).sum::<usize>())
+        })?;
+        let total = counts.iter().sum();
+        let mut numbers = filled(count, [NONE; 3])?;
+        made.around = filled(total, [0; 4])?;
+        made.ends = filled(total, [0; 2])?;
+        // Each task fills its own part of the arrays.
+        let (mut around, mut ends) = (&mut made.around[..], &mut made.ends[..]);
+        let mut tasks = Vec::with_capacity(counts.len());
+        let mut first = 0;
+        for ((from, own), count) in shares().zip(numbers.chunks_mut(SHARE)).zip(counts) {
+            let (own_around, rest_around) = around.split_at_mut(count);
+            let (own_ends, rest_ends) = ends.split_at_mut(count);
+            tasks.push((from, own, first, own_around.iter_mut().zip(own_ends)));
+            (around, ends) = (rest_around, rest_ends);
+            first += count as u32;
         }
+        let vertex = &made.vertex[..];
+        parallel::map_watched(
+            workers,
+            tasks,
+            watch,
+            |(from, own, mut number, mut places)| {
+                for (t, numbers) in (from..).zip(own) {
+                    for k in (0..3).filter(|&k| self.owns(tied, t, k)) {
+                        let Some((around, ends)) = places.next() else {
+                            break;
+                        };
+                        *around = self.around(t, k)?;
+                        *ends = [vertex[t], vertex[self.neighbors[t][k] as usize]];
+                        numbers[k] = number;
+                        number += 1;
+                    }
+                }
+                Ok(())
+            },
+        )?;
         Ok(numbers)
     }
 
@@ -173,7 +210,8 @@ impl Facets<'_> {
         rows: usize,
         numbers: &[[u32; 3]],
         made: &mut Dual,
-        pace: &mut Pace,
+        workers: usize,
+        watch: &Watch,
     ) -> Result<()> {
         // The first corner of each row, 4 t + k.
         let mut corner = filled(rows, NONE)?;
@@ -182,30 +220,63 @@ impl Facets<'_> {
                 corner[v as usize] = (4 * t + k) as u32;
             }
         }
+        let vertex = &made.vertex[..];
+        let parts =
+            parallel::map_watched(workers, corner.chunks(SHARE).collect(), watch, |part| {
+                let (mut ends, mut around) = (with_room(part.len())?, with_room(6 * part.len())?);
+                for &code in part.iter().filter(|&&code| code != NONE) {
+                    self.turn(code, numbers, |t, ridge| {
+                        push(&mut around, (vertex[t], ridge as i32))
+                    })?;
+                    ends.push(around.len());
+                }
+                Ok((ends, around))
+            })?;
+        let total = parts.iter().map(|(_, around)| around.len()).sum();
         made.cell = filled(rows, -1)?;
+        for (i, cell) in (0..).zip(made.cell.iter_mut().zip(&corner).filter(|x| *x.1 != NONE)) {
+            *cell.0 = i;
+        }
         made.starts = with_room(rows + 1)?;
         made.starts.push(0);
-        made.vertices = with_room(2 * made.around.len())?;
-        made.ridges = with_room(2 * made.around.len())?;
-        for (row, &code) in corner.iter().enumerate().filter(|x| *x.1 != NONE) {
-            made.cell[row] = made.starts.len() as i32 - 1;
-            let first = (code as usize / 4, code as usize % 4);
-            let (mut t, mut k) = first;
-            // A turn visits each facet once.
-            for _ in 0..self.simplices.len() {
-                pace.spend(1)?;
-                let edge = (k + 1) % 3;
-                if numbers[t][edge] != NONE {
-                    push(&mut made.vertices, made.vertex[t])?;
-                    push(&mut made.ridges, numbers[t][edge] as i32)?;
-                }
-                let next = self.neighbors[t][edge] as usize;
-                (t, k) = (next, (self.back(t, next)? + 1) % 3);
-                if (t, k) == first {
-                    break;
-                }
+        made.vertices = with_room(total)?;
+        made.ridges = with_room(total)?;
+        for (ends, around) in parts {
+            watch.check()?;
+            let before = made.vertices.len();
+            made.starts
+                .extend(ends.iter().map(|&end| (before + end) as i32));
+            made.vertices.extend(around.iter().map(|x| x.0));
+            made.ridges.extend(around.iter().map(|x| x.1));
+        }
+        Ok(())
+    }
+
+    /// Turns once around the vertex of a corner, 4 t + k, counterclockwise: calls `found` with each
+    /// facet and the ridge dual to the edge that the turn leaves it by, where there is one.
+    #[inline]
+    fn turn(
+        &self,
+        code: u32,
+        numbers: &[[u32; 3]],
+        mut found: impl FnMut(usize, u32) -> Result<()>,
+    ) -> Result<()> {
+        let first = (code as usize / 4, code as usize % 4);
+        let (mut t, mut k) = first;
+        // A turn visits each facet once.
+        for _ in 0..self.simplices.len() {
+            let edge = (k + 1) % 3;
+            let next = self.neighbors[t][edge] as usize;
+            let back = self.back(t, next)?;
+            // One of both sides owns the ridge.
+            let ridge = numbers[t][edge].min(numbers[next][back]);
+            if ridge != NONE {
+                found(t, ridge)?;
             }
-            push(&mut made.starts, made.vertices.len() as i32)?;
+            (t, k) = (next, (back + 1) % 3);
+            if (t, k) == first {
+                break;
+            }
         }
         Ok(())
     }
