@@ -7,8 +7,8 @@
 use delone_predicates::Sign;
 use num_bigint::BigInt;
 
+use super::dispatch;
 use super::simplex;
-use super::walk::walk;
 use crate::base::arrays::{Given, Side};
 use crate::base::error::Result;
 use crate::base::points::Extent;
@@ -56,7 +56,7 @@ macro_rules! dimensions {
             }
 
             fn walk(given: &Given<$d, $n>, from: usize, q: [f64; $d]) -> Result<Located<$n>> {
-                Ok(walk::<$d, $n, $p>(given, from, &q))
+                Ok(dispatch::walk::<$d, $n, $p>(given, from, &q))
             }
 
             fn first_around(given: &Given<$d, $n>, place: Place<$n>) -> First<$n> {

@@ -52,17 +52,20 @@ fn seen<const D: usize, const V: usize, const P: usize>(
     (a, d, least > SAFE.start && most < SAFE.end)
 }
 
-/// Rounded barycentric coordinates of a point, and the bound of their errors, infinite if unknown.
+/// Rounded barycentric coordinates of a point, the bound of their errors, infinite if unknown, and
+/// the inverse of the differences of the corners.
 #[inline(always)]
 pub fn rough<const D: usize, const V: usize, const P: usize>(
     corners: &[[f64; D]; V],
     q: &[f64; D],
-) -> ([f64; V], f64) {
+) -> ([f64; V], f64, Matrix<D, P>) {
     let (a, d, safe) = seen::<D, V, P>(corners, q);
     if !safe {
-        return ([f64::NAN; V], f64::INFINITY);
+        return ([f64::NAN; V], f64::INFINITY, [[0.0; P]; D]);
     }
-    barycentric(&invert(&a), &d)
+    let inverse = invert(&a);
+    let (l, bound) = barycentric(&inverse, &d);
+    (l, bound, inverse.b)
 }
 
 /// Whether a point whose coordinates are off by at most `slack` is outside for certain.
@@ -89,7 +92,7 @@ pub fn sides<const D: usize, const V: usize, const P: usize>(
     corners: &[[f64; D]; V],
     q: &[f64; D],
 ) -> [Sign; V] {
-    let (l, bound) = rough::<D, V, P>(corners, q);
+    let (l, bound, _) = rough::<D, V, P>(corners, q);
     if l.iter().all(|x| x.abs() > bound) {
         return l.map(sign_of);
     }

@@ -308,3 +308,45 @@ fn weights_have_their_part_in_bounds() {
     check_parts::<5, 6, 8>();
     check_parts::<8, 9, 8>();
 }
+
+/// With rows in any order, that is with any order of pivots, inverses of regular matrices are proven.
+#[test]
+fn inverses_are_proven_for_rows_in_any_order() {
+    fn check<const D: usize, const P: usize>(random: &mut Random) {
+        for turn in 0..200 {
+            let mut rows: Vec<usize> = (0..D).collect();
+            random.shuffle(&mut rows);
+            let mut a = [[0.0; P]; D];
+            for (row, &k) in a.iter_mut().zip(&rows) {
+                for x in &mut row[..D] {
+                    *x = if turn % 2 == 0 {
+                        0.0
+                    } else {
+                        0.05 * random.unit()
+                    };
+                }
+                row[k] = 1.0 + random.unit();
+            }
+            let inverse = invert(&a);
+            assert!(
+                inverse.norm < 4.0 * D as f64 && inverse.defect < 1e-12,
+                "{a:?}"
+            );
+            for row in inverse.b {
+                assert_eq!(row[D..], [0.0; P][D..]);
+            }
+        }
+        // Two equal rows.
+        let mut a = [[0.0; P]; D];
+        for (k, row) in a.iter_mut().enumerate() {
+            row[k.min(D - 2)] = 1.0;
+        }
+        assert_eq!(invert(&a).norm, f64::INFINITY);
+    }
+    let mut random = Random::new(3);
+    check::<4, 4>(&mut random);
+    check::<5, 8>(&mut random);
+    check::<6, 8>(&mut random);
+    check::<7, 8>(&mut random);
+    check::<8, 8>(&mut random);
+}

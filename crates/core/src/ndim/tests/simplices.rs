@@ -5,11 +5,12 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
 
-use super::super::simplex::{circumcenter, orientation, sides, transform, volume, weights};
+use super::super::simplex::{circumcenter, orientation, rough, sides, transform, volume, weights};
+use super::super::walk::hurry;
 use super::super::{Hyper, Weighed, nearest, triangulate, within};
 use super::brute;
 use super::sets::{Random, kinds};
-use crate::base::arrays::Given;
+use crate::base::arrays::{Given, Side};
 use crate::base::watch::IDLE;
 use crate::locate::{Batch, Cache, Locator, find};
 
@@ -266,4 +267,47 @@ fn points_are_located_in_the_first_simplex_that_contains_them() {
     located::<5, 6, 8>(2);
     located::<6, 7, 8>(1);
     located::<8, 9, 8>(1);
+}
+
+/// Rounded steps lead from any simplex to the one that contains a query, in general position.
+#[test]
+fn rounded_steps_end_where_the_query_is() {
+    fn check<const D: usize, const N: usize, const P: usize>(n: usize) {
+        let mut random = Random::new(D as u64);
+        let points: Vec<[f64; D]> = (0..n).map(|_| [0; D].map(|_| random.unit())).collect();
+        let made = triangulate::<D, N, P>(&points, &IDLE).unwrap();
+        let simplices: Vec<[i32; N]> = made.simplices.iter().map(|v| v.map(|i| i as i32)).collect();
+        let given = Given {
+            points: &points,
+            simplices: &simplices,
+            neighbors: &made.neighbors,
+        };
+        let (mut walks, mut right) = (0, 0);
+        while walks < 200 {
+            // A point in one simplex, and another simplex, as far away as any.
+            let [home, from] = [0; 2].map(|_| random.below(simplices.len() as u64) as usize);
+            let mut q = [0.0; D];
+            for p in given.corners(home) {
+                for k in 0..D {
+                    q[k] += p[k] / N as f64;
+                }
+            }
+            let (l, bound, inverse) = rough::<D, N, P>(&given.corners(from), &q);
+            let corner = (0..N).min_by(|&i, &j| l[i].total_cmp(&l[j])).unwrap();
+            if l[corner] >= -bound {
+                continue;
+            }
+            walks += 1;
+            let at = Side {
+                simplex: from,
+                corner,
+            };
+            right += usize::from(hurry(&given, at, &q, l, inverse, 10_000) == home);
+        }
+        assert!(right >= 190, "{D}-D: {right} of {walks}");
+    }
+    check::<4, 5, 4>(300);
+    check::<5, 6, 8>(120);
+    check::<6, 7, 8>(60);
+    check::<8, 9, 8>(30);
 }
