@@ -48,7 +48,7 @@ with np.errstate(invalid="ignore"):
 missed = int((sums == 0).sum())
 away = np.abs(shortcut - means)
 print(f"{missed} of {len(polygons)} areas contain no center of a cell")
-print(f"largest error of the others: {np.nanmax(away):.1f} degrees")
+print(f"largest error of the others: {np.nanmax(away):.1f} °C")
 for k, name in enumerate(("Eurasia and Africa", "Antarctica", "the Americas")):
     print(f"{name:20} {means[k]:6.2f}, by centers {shortcut[k]:6.2f}")
 assert missed > 0
@@ -57,13 +57,24 @@ assert missed > 0
 # The means on a map, and the error of the shortcut against the size of the area.
 
 figure, axes = plt.subplots(2, 1, figsize=(8, 8.2), layout="constrained", height_ratios=(3, 2))
-land.to_geopandas({"mean": means}).plot("mean", ax=axes[0], legend=True, edgecolor="0.3", lw=0.4)
+land.to_geopandas({"mean": means}).plot(
+    "mean", ax=axes[0], legend=True, edgecolor="0.3", lw=0.4, legend_kwds={"shrink": 0.7}
+)
 axes[0].set(title="Mean temperature of each land mass, °C", xlabel="longitude", ylabel="latitude")
 axes[0].set_aspect("equal")
 size = land.areas * 6371.0088**2
 known = np.isfinite(away)
-axes[1].loglog(size[known], np.maximum(away[known], 1e-3), "o", ms=4, label="by centers of cells")
-axes[1].plot(size[~known], np.full((~known).sum(), 10), "x", color="C3", label="no center inside")
-axes[1].set(xlabel="area, km²", ylabel="error, degrees", title="The shortcut")
+axes[1].loglog(size[known], np.maximum(away[known], 1e-3), "o", ms=4, label="one center or more")
+marks = axes[1].get_xaxis_transform()
+axes[1].plot(
+    size[~known],
+    np.full(missed, 0.03),
+    "x",
+    color="C3",
+    transform=marks,
+    label="no center inside, no value",
+)
+axes[1].set(xlabel="area, km²", ylabel="error, °C", title="Error of the means by centers of cells")
+axes[1].set_ylim(bottom=3e-4)
 axes[1].legend()
 plt.show()

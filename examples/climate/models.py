@@ -74,14 +74,25 @@ print("largest change of a volume:", f"{abs(after / before - 1).max():.0e}")
 assert np.allclose(before, after, rtol=1e-6)
 
 # %%
-# Maps of the mesh and of the result in March.
+# Maps of the mesh and of the result in March and September. White cells are land or open water.
 
-figure, axes = plt.subplots(2, 1, figsize=(7.5, 8), layout="constrained")
+figure, axes = plt.subplots(2, 2, figsize=(12, 6.4), layout="constrained")
 land = datasets.land()
-regridder.source.plot(
-    axes[0], values=thick[2], coast=land, title="Thickness of ice in March on the mesh, m"
-)
-regridder.target.plot(
-    axes[1], values=found.ice.values[2], sides=False, coast=land, title="On cells of 3 degrees"
-)
+for column, (name, row) in enumerate((("March", 2), ("September", 8))):
+    regridder.source.plot(
+        axes[0, column],
+        values=thick[row],
+        coast=land,
+        title=f"Thickness of ice in {name} on the mesh, m",
+    )
+    regridder.target.plot(
+        axes[1, column],
+        values=found.ice.values[row],
+        sides=False,
+        coast=land,
+        title=f"{name}, on cells of 3 degrees, m",
+    )
+for ax in axes.flat:
+    # All maps have the same colors.
+    ax.images[0].set_clim(0, 4)
 plt.show()

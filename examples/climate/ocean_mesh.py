@@ -78,6 +78,9 @@ regridder.source.plot(axes[0], values=ocean.sst.values[0], coast=land, bounds=wi
                       title="Cells around the nodes of the model, °C")  # fmt: skip
 regridder.target.plot(axes[1], values=found.sst.values[0], sides=False, coast=land,
                       title="On cells of 2 degrees, °C")  # fmt: skip
+for ax in axes[:2]:
+    # Both maps have the same colors.
+    ax.images[0].set_clim(-4, 28)
 regridder.target.plot(axes[2], values=regridder.weights.fractions, sides=False, coast=land,
                       title="Fraction of each cell that the model covers", cmap="cividis")  # fmt: skip
 plt.show()

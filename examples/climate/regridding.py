@@ -14,7 +14,7 @@ import numpy as np
 from delone import datasets, sphere
 
 # %%
-# The field has values at sea only, like that of an ocean model.
+# The field has values at sea only, like the temperature of an ocean model.
 
 source = sphere.Grid.from_healpix(24)
 places = source.centers_lonlat
@@ -49,7 +49,11 @@ edges = np.arange(-180, 181, 3), np.arange(-90, 91, 3)
 for ax, values, title in zip(
     axes,
     (conservative, means, conservative / means),
-    ("conservative: totals are preserved", "normalized: means at sea", "their quotient"),
+    (
+        "conservative: totals are preserved, °C",
+        "normalized: means at sea, °C",
+        "their ratio: the fraction that is sea",
+    ),
     strict=True,
 ):
     colors = ax.pcolormesh(*edges, values, cmap="viridis")

@@ -56,5 +56,6 @@ for ax, cells, values, title in (
     ax.set_aspect("equal")
     ax.set(title=title, xlabel="km")
     ax.autoscale_view()
-fig.colorbar(drawn, ax=axes, label="inhabitants per km²")
+axes[0].set_ylabel("km")
+fig.colorbar(drawn, ax=axes, label="inhabitants per km²", extend="max")
 plt.show()
