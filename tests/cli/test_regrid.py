@@ -222,7 +222,7 @@ def test_what_is_refused(model, command, arguments, code, message):
     assert out == ""
 
 
-def test_pictures_of_fields_on_other_dimensions(tmp_path, command):
+def test_fields_on_other_dimensions(tmp_path, command):
     # The mesh is in one file, and the field in another one, which calls its cells differently.
     pytest.importorskip("matplotlib")
     mesh, field = tmp_path / "mesh.nc", tmp_path / "field.nc"
@@ -236,8 +236,28 @@ def test_pictures_of_fields_on_other_dimensions(tmp_path, command):
         }
     ).to_netcdf(mesh)
     xarray.Dataset({"psi": ("ncol", [1.0, 2.0])}).to_netcdf(field)
-    options = str(field), "30x30", "--grid", str(mesh), "-o", str(tmp_path / "maps.png")
+    for name in ("maps.png", "out.nc"):
+        # A file without a field would look like a success.
+        written = tmp_path / name
+        options = str(field), "30x30", "--grid", str(mesh), "-o", str(written)
+        code, _, errors = command("regrid", *options)
+        assert code == 2
+        assert "grid of 2 cells; variables have {'psi': {'ncol': 2}}: give their" in errors
+        assert not written.exists()
+        assert command("regrid", *options, "--dims", "ncol")[0] == 0
+        assert written.exists()
+    # Without an output, only the report is wanted.
+    assert command("regrid", str(field), "30x30", "--grid", str(mesh))[0] == 0
+
+
+def test_files_without_fields(tmp_path, command):
+    mesh = tmp_path / "mesh.nc"
+    lon, lat = (
+        ("x", [5.0, 15.0], {"units": "degrees_east"}),
+        ("y", [5.0, 9.0], {"units": "degrees_north"}),
+    )
+    xarray.Dataset(coords={"x": lon, "y": lat}).to_netcdf(mesh)
+    options = str(mesh), "30x30", "--infer-bounds", "-o", str(tmp_path / "out.nc")
     code, _, errors = command("regrid", *options)
-    assert code == 2
-    assert "grid of 2 cells; variables have {'psi': {'ncol': 2}}: give their" in errors
-    assert command("regrid", *options, "--dims", "ncol")[0] == 0
+    assert code != 0
+    assert "there are no fields to regrid" in errors

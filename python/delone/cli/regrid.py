@@ -181,6 +181,8 @@ def regrid(
         with reading(quiet=quiet), watch.stage("regrid"):
             options = {"skipna": skipna, "min_fraction": min_fraction, "fill": fill}
             found = _noted(regridder, fields, options, quiet=quiet)
+        if outputs:
+            _require_fields(regridder, fields, found)
         for path in outputs:
             with writing(), watch.stage(f"write {path.name}"), replacing(path) as temporary:
                 if path.suffix.lower() in _IMAGES:
@@ -260,6 +262,21 @@ def _noted(regridder: Any, fields: Any, options: dict[str, Any], *, quiet: bool)
     return found
 
 
+def _require_fields(regridder: Any, fields: Any, found: Any) -> None:
+    """Reject a dataset of which no variable is on the source grid."""
+    if _regridded(regridder, fields, found):
+        return
+    sizes = {str(n): dict(part.sizes) for n, part in list(fields.data_vars.items())[:3]}
+    shape = " x ".join(map(str, regridder.source.grid_shape))
+    if not sizes:
+        raise Failure("there are no fields to regrid: the file has no variables", Exit.INPUT)
+    raise Failure(
+        f"no field is on the grid of {shape} cells; variables have {sizes!r:.200}: "
+        "give their dimensions as --dims",
+        Exit.USAGE,
+    )
+
+
 def _draw(path: Path, regridder: Any, fields: Any, found: Any) -> None:
     """Draw the first field, at index 0 of its other dimensions, on both grids.
 
@@ -268,14 +285,6 @@ def _draw(path: Path, regridder: Any, fields: Any, found: Any) -> None:
     """
     figures = require("matplotlib.figure", extra="plot", what="drawing")
     names = _regridded(regridder, fields, found)
-    if not names:
-        sizes = {str(n): dict(part.sizes) for n, part in list(fields.data_vars.items())[:3]}
-        shape = " x ".join(map(str, regridder.source.grid_shape))
-        raise Failure(
-            f"no field to draw is on the grid of {shape} cells; variables have {sizes!r:.200}: "
-            "give their dimensions as --dims",
-            Exit.USAGE,
-        )
     before, after = fields[names[0]], found[names[0]]
     own = regridder.source_dims or before.dims[before.ndim - len(regridder.source.grid_shape) :]
     maps = 2 if regridder.weights.method in {"sum", "majority"} else 3
