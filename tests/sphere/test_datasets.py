@@ -566,6 +566,9 @@ def test_healpix() -> None:
             Grid.from_dataset(wrong)
 
 
+PROJECTED = "projection_x_coordinate"
+
+
 @pytest.mark.parametrize(
     ("make", "error", "message"),
     [
@@ -575,8 +578,9 @@ def test_healpix() -> None:
         (
             lambda: ugrid(NODES + 1),
             delone.InputError,
-            r"faces: 1 cell has a node out of range 0 to 90; first cell 71, node 91",
+            r"0 to 90; first cell 71, node 91: if nodes are counted from 1, set .* to 1$",
         ),
+        (lambda: ugrid(NODES + 2), delone.InputError, r"first cell \d+, node 9\d$"),
         (lambda: ugrid(NODES, start_index=1), delone.InputError, "out of range 1 to 91"),
         (lambda: ugrid(NODES + 0.5), delone.InputError, "72 cells have a node out of range"),
         (lambda: ugrid().drop_vars("x"), delone.InputError, "no variable 'x', its coordinate"),
@@ -584,7 +588,22 @@ def test_healpix() -> None:
         (
             lambda: ugrid().assign(x=("node", X.ravel())),
             delone.InputError,
-            "neither by standard_name nor by units",
+            "neither by standard_name nor by units.*set their units to degrees_east",
+        ),
+        (
+            lambda: ugrid().assign(x=("node", X.ravel(), {"standard_name": PROJECTED})),
+            delone.InputError,
+            "x is a projection_x_coordinate, not a longitude or latitude: transform the corners",
+        ),
+        (
+            lambda: xarray.Dataset(coords={"x": ("x", [0.0, 5e3], {"standard_name": PROJECTED})}),
+            delone.InputError,
+            "x is a projection_x_coordinate",
+        ),
+        (
+            lambda: xarray.Dataset(coords={"r": ("r", [0, 5], {"standard_name": "grid_latitude"})}),
+            delone.InputError,
+            "r is a grid_latitude, not a longitude or latitude",
         ),
         (
             lambda: mpas().assign_attrs(on_a_sphere="NO"),

@@ -86,6 +86,48 @@ def test_centers_are_halfway_between_bounds() -> None:
     assert Grid.from_healpix(1).bounds is None
 
 
+def test_corners_beyond_a_pole_by_rounding_are_the_pole() -> None:
+    far = np.nextafter(np.float32(90), np.float32(91))
+    for kind, degrees in ((np.float64, True), (np.float32, True), (np.float64, False)):
+        corners = np.array([[(0, 80), (120, 80), (0, far)], [(0, -80), (0, -far), (120, -80)]])
+        wanted = Grid.from_mesh(lonlat=np.clip(corners, -90, 120))
+        given = corners.astype(kind) if degrees else np.radians(corners)
+        found = Grid.from_mesh(lonlat=given, degrees=degrees)
+        assert np.allclose(found.areas, wanted.areas, rtol=1e-12)
+        assert (np.abs(found.rings[0][[2, 4]]) == [0, 0, 1]).all()
+    lon, lat = np.meshgrid(np.arange(0, 361, 90), [80, far])
+    band = Grid.from_curvilinear(lon, lat)
+    assert (band.rings[0][:, 2] == 1).sum() == 8
+    with pytest.raises(
+        delone.DirectionError, match="2 rows have a latitude beyond a pole"
+    ) as caught:
+        Grid.from_mesh(lonlat=[[(0, 80), (120, 90.0001), (0, 91)]])
+    assert caught.value.rows.tolist() == [1, 2]
+
+
+def test_holes_must_be_inside_their_outer_ring_and_not_in_each_other() -> None:
+    shapely = pytest.importorskip("shapely")
+    square, lake = [(0, 0), (10, 0), (10, 10), (0, 10)], [(2, 2), (8, 2), (8, 8)]
+    good = shapely.Polygon(square, [lake])
+    # Holes may touch the outer ring and each other; islands may lie in them.
+    touching = shapely.Polygon(square, [[(0, 0), (5, 1), (5, 2)], [(5, 2), (6, 3), (5, 4)]])
+    island = shapely.MultiPolygon([good, shapely.Polygon([(6, 3), (7, 3), (7, 4)])])
+    assert (Grid.from_polygons([good, touching, island]).areas > 0).all()
+    for holes in (
+        [[(20, 20), (30, 20), (30, 30)]],
+        # It touches the outer ring from the other side.
+        [[(10, 0), (20, -5), (20, 5)]],
+        [lake, [(3, 2.5), (7, 2.5), (7, 5)]],
+        [[(3, 2.5), (7, 2.5), (7, 5)], lake],
+    ):
+        bad = shapely.Polygon(square, holes)
+        # Another cell has area there, which does not matter.
+        for given in ([good, bad, shapely.box(10, 0, 30, 30)], [good, shapely.reverse(bad)]):
+            with pytest.raises(delone.DirectionError, match="1 cell has a hole that") as caught:
+                Grid.from_polygons(given)
+            assert caught.value.rows.tolist() == [1]
+
+
 def test_a_latitude_beyond_a_pole_by_rounding_is_the_pole() -> None:
     lat = np.radians(LAT.astype(np.float32)).astype(np.float64)
     grid = Grid.from_lonlat(LON, np.degrees(lat))

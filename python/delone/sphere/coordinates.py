@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from delone._base.types import Bools, Floats
 
 __all__ = [
+    "BEYOND",
     "LongitudeWarning",
     "as_step",
     "directions_of",
@@ -43,6 +44,8 @@ __all__ = [
     "units_of",
 ]
 
+# Latitudes of corners beyond a pole by a rounding error of float32 mean the pole.
+BEYOND = 1 + 2.0**-22
 # Longitudes beyond this many turns are a mistake, such as a wrong unit.
 _TURNS = 3
 
@@ -73,6 +76,7 @@ def directions_of(
     """Return one of two kinds of input as vectors, (n, 3), that nobody else can change.
 
     Longitudes of more than one turn cause a warning, unless `any_turns`, as corners of cells have.
+    Latitudes of such corners that are beyond a pole by a rounding error of float32 are the pole.
     """
     if (lonlat is None) == (xyz is None):
         given = "neither" if lonlat is None else "both"
@@ -89,6 +93,8 @@ def directions_of(
     if angles.shape[1] != 2:
         raise ShapeError(f"lonlat must have shape (n, 2), got {angles.shape}: see xyz")
     require_finite(angles, name="lonlat")
+    if any_turns:
+        angles = _at_poles(angles, 90.0 if degrees else math.pi / 2)
     _refuse_angles(angles, degrees=degrees, name="lonlat")
     if not any_turns:
         _warn_of_turns(angles, degrees=degrees)
@@ -162,6 +168,16 @@ def _quarters(angles: Floats, given: Any) -> Floats:
     short = turns.astype(kind).astype(np.float64)
     at = np.minimum(np.searchsorted(short, angles), len(short) - 1)
     return np.where(short[at] == angles, turns[at], angles)
+
+
+def _at_poles(angles: Floats, quarter: float) -> Floats:
+    """Return angles with latitudes beyond a pole by a rounding error set to the pole."""
+    far = np.abs(angles[:, 1])
+    beyond = (far > quarter) & (far <= quarter * BEYOND)
+    if beyond.any():
+        angles = angles.copy()
+        angles[beyond, 1] = np.copysign(quarter, angles[beyond, 1])
+    return angles
 
 
 def _refuse_angles(angles: Floats, *, degrees: bool, name: str) -> None:

@@ -498,7 +498,8 @@ class Grid(GridCells):
             A geometry is not a polygon, or its reference system is projected; `winding` is unknown,
             or the outer rings of a geometry run in both directions.
         DirectionError
-            As for `from_curvilinear`.
+            As for `from_curvilinear`; or a hole is not inside its outer ring, or is inside another
+            hole. With `winding` "ccw" or "cw", holes are not checked.
         MissingExtraError
             shapely is not installed.
 
@@ -522,7 +523,10 @@ class Grid(GridCells):
         given = rings_of.geometries(geometries, degrees=degrees, workers=workers)
         vectors, merged = merged_corners(given.vectors, _as_merge(merge))
         arrays = (vectors, given.rings, given.cells, given.holes)
-        return cls._wound(arrays, (len(given.cells) - 1,), merged, winding, workers)
+        made = cls._wound(arrays, (len(given.cells) - 1,), merged, winding, workers)
+        if winding in {None, "smaller"}:
+            rings_of.require_nested(arrays, workers)
+        return made
 
     @classmethod
     def from_voronoi(cls, diagram: Voronoi, *, workers: int | None = None) -> Self:

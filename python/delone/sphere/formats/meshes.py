@@ -17,6 +17,7 @@ from delone.sphere.formats.variables import (
     numbers,
     places,
     ragged,
+    refuse_projected,
     required,
 )
 
@@ -99,9 +100,11 @@ def read_ugrid(variables: Variables, choices: Choices) -> Cells:
     if is_angle(variables[nodes[0]], 1) and is_angle(variables[nodes[1]], 0):
         nodes.reverse()
     elif not (is_angle(variables[nodes[0]], 0) and is_angle(variables[nodes[1]], 1)):
+        refuse_projected({each: variables[each] for each in nodes})
         raise InputError(
             f"{name}: {nodes[0]} and {nodes[1]} say neither by standard_name nor by units which "
-            "is the longitude and which is the latitude"
+            "is the longitude and which is the latitude: set their units to degrees_east and "
+            "degrees_north"
         )
     vectors = _nodes(variables, (nodes[0], nodes[1]), choices)
     faces = str(topology["face_node_connectivity"])

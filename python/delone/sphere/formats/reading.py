@@ -9,7 +9,12 @@ import numpy as np
 from delone.errors import InputError
 from delone.interpolate.places import unit_of
 from delone.sphere.formats import corners, meshes, structured
-from delone.sphere.formats.variables import in_degrees, numbers, variables_of
+from delone.sphere.formats.variables import (
+    in_degrees,
+    numbers,
+    refuse_projected,
+    variables_of,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -143,6 +148,7 @@ def _read(given: Any, choices: Choices) -> Cells:
             return each.read(variables, choices)
     if structured.centers(variables, choices) is not None:
         return structured.read_bounds(variables, choices)
+    refuse_projected(variables)
     listed = "; ".join(f"{each.name} ({each.wanted})" for each in (*_FORMATS, *_LAST))
     raise InputError(
         f"the dataset has no grid: looked for {listed}; MPAS (verticesOnCell, nEdgesOnCell); and "

@@ -10,12 +10,12 @@ from delone._base.arrays import as_text, as_workers
 from delone.errors import DirectionError, DtypeError, InputError, ShapeError
 from delone.interpolate.places import is_angle
 from delone.sphere.boxes import as_boxes
-from delone.sphere.coordinates import units_of
+from delone.sphere.coordinates import BEYOND, units_of
 from delone.sphere.formats.cells import Cells
 from delone.sphere.formats.corners import listed
 from delone.sphere.formats.variables import attribute, in_degrees, numbers, places, required
 from delone.sphere.healpix import healpix_corners
-from delone.sphere.rings import BEYOND, as_bounds, voronoi
+from delone.sphere.rings import as_bounds, voronoi
 from delone.sphere.voronoi import Voronoi
 
 if TYPE_CHECKING:

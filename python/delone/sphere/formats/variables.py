@@ -10,8 +10,7 @@ from delone._base.counting import agreed, counted
 from delone._base.values import require_real
 from delone.errors import DirectionError, DtypeError, InputError, NonFiniteError, ShapeError
 from delone.interpolate.places import unit_of
-from delone.sphere.coordinates import directions_of
-from delone.sphere.rings import BEYOND
+from delone.sphere.coordinates import BEYOND, directions_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,6 +26,7 @@ __all__ = [
     "padded",
     "places",
     "ragged",
+    "refuse_projected",
     "required",
     "variables_of",
 ]
@@ -86,6 +86,17 @@ def numbers(variable: Any, name: str) -> NDArray[Any]:
 def _require_same_shape(lon: NDArray[Any], lat: NDArray[Any], names: tuple[str, str]) -> None:
     if lon.shape != lat.shape:
         raise ShapeError(f"{names[0]} has shape {lon.shape}, and {names[1]} {lat.shape}")
+
+
+def refuse_projected(variables: dict[str, Any]) -> None:
+    """Reject variables that are coordinates of a projection or of a turned pole."""
+    for name, part in variables.items():
+        known = str(part.attrs.get("standard_name", ""))
+        if known.startswith("projection_") or known in {"grid_longitude", "grid_latitude"}:
+            raise InputError(
+                f"{name} is a {known}, not a longitude or latitude: transform the corners of "
+                "cells, for example with pyproj, and use Grid.from_curvilinear or Grid.from_mesh"
+            )
 
 
 def required(variables: dict[str, Any], name: str) -> Any:
@@ -225,8 +236,11 @@ def _nodes(entries: NDArray[Any], name: str, nodes: int, start: int, starts: Row
         cell = int(np.searchsorted(starts, at, side="right")) - 1
         rows = np.unique(np.searchsorted(starts, np.flatnonzero(wrong), side="right") - 1)
         count = counted(len(rows), "cell")
+        hint = ""
+        if start == 0 and found.min() == 1 and found.max() == nodes and (found == entries).all():
+            hint = ": if nodes are counted from 1, set its attribute start_index to 1"
         raise InputError(
             f"{name}: {count} {agreed(len(rows), 'has', 'have')} a node out of range {start} to "
-            f"{nodes - 1 + start}; first cell {cell}, node {entries[at]}"
+            f"{nodes - 1 + start}; first cell {cell}, node {entries[at]}{hint}"
         )
     return found - start
