@@ -294,3 +294,13 @@ LINE = Grid.from_lonlat([0, 1, 2, 3], [-1, 1])
 def test_what_is_refused(call: Callable[[], Any], message: str) -> None:
     with pytest.raises(delone.InputError, match=message):
         call()
+
+
+def test_pairs_beyond_the_first_lot(monkeypatch: pytest.MonkeyPatch) -> None:
+    source, target = Grid.from_healpix(4), Grid.from_lonlat(range(0, 361, 30), range(-90, 91, 30))
+    field = np.random.default_rng(5).random(source.ncells)
+    wanted = Overlaps(source, target).to_weights("conservative", order=2).apply(field)
+    monkeypatch.setattr("delone.sphere.moments._LOT", 7)
+    found = Overlaps(source, target).to_weights("conservative", order=2).apply(field)
+    # Equal up to rounding.
+    assert np.allclose(found, wanted, rtol=1e-12, atol=0)
