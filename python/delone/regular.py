@@ -17,6 +17,7 @@ from delone._base.georeference import warn_of_degrees
 from delone._base.immutable import kept, own_copy, sealed
 from delone._tiling.higher.dimension import MOST
 from delone._tiling.higher.size import require_room
+from delone._tiling.higher.thin import warn_of_rounding
 from delone._tiling.space.plane import plane_of, repeated_rows
 from delone._tiling.triangulation import PointTriangulation
 from delone.errors import DegenerateInputError, InternalError, NonFiniteError, ShapeError
@@ -79,6 +80,11 @@ class RegularTriangulation(PointTriangulation):
     KeyboardInterrupt
         Ctrl-C was pressed. No partial result remains.
 
+    Warns
+    -----
+    NearlyFlatWarning
+        From 4-D on: the points lie in a flat except for rounding errors.
+
     Notes
     -----
     The simplices are the projection of the lower convex hull of the points, each lifted to its
@@ -136,6 +142,8 @@ class RegularTriangulation(PointTriangulation):
         arrays, chain = triangulated(own, own_weights, workers)
         if not len(arrays["simplices"]):
             raise _degenerate(own, chain)
+        if own.shape[1] > _SPACE:
+            warn_of_rounding(own)
         self._fill(arrays, {}, workers)
         self._refer(points)
 

@@ -74,6 +74,7 @@ def test_labels_of_contours(folder, figures, command):
         ((), "--label-length needs --labels"),
         (("--labels", "b.gpkg", "--bands"), "--labels is for lines"),
         (("--index", 5, "--bands"), "--index is for lines"),
+        (("--index", 0, "--bands"), "--index is for lines"),
         (("--labels", "b.txt"), "can only be written to"),
         (("--labels", "a b.csv"), "would replace the input"),
     ):

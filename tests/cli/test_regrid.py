@@ -242,7 +242,7 @@ def test_fields_on_other_dimensions(tmp_path, command):
         options = str(field), "30x30", "--grid", str(mesh), "-o", str(written)
         code, _, errors = command("regrid", *options)
         assert code == 2
-        assert "grid of 2 cells; variables have {'psi': {'ncol': 2}}: give their" in errors
+        assert "grid of 2 cells. Dimensions of variables: psi has ncol 2. Give those of" in errors
         assert not written.exists()
         assert command("regrid", *options, "--dims", "ncol")[0] == 0
         assert written.exists()

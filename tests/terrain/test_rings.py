@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from delone import CrossingSegmentsError, InputError
+from delone import CrossingSegmentsError, InputError, from_geometry
 from delone.io import GeometrySet, read_surface
 from delone.terrain import TIN, snapping
 
@@ -276,3 +276,30 @@ def test_an_empty_boundary_is_an_error():
             TIN.from_points(BOX, boundary=empty)
     # Empty layers of holes and breaklines are what a job in steps has.
     assert len(TIN.from_points(BOX, holes=[], breaklines=[]).simplices) == 2
+
+
+def test_features_hold_geometries_of_any_form():
+    shapely = pytest.importorskip("shapely")
+
+    class Placed:
+        def __init__(self, mapping):
+            self.__geo_interface__ = mapping
+
+    polygon = shapely.box(2, 0.5, 3, 1.5)
+    plain = shapely.geometry.mapping(polygon)
+    tin = TIN.from_points(BOX)
+    for feature in (
+        polygon, plain, Placed(plain),
+        {"type": "Feature", "geometry": polygon}, {"type": "Feature", "geometry": plain},
+        {"type": "Feature", "geometry": Placed(plain)},
+        Placed({"type": "Feature", "geometry": plain}),
+    ):  # fmt: skip
+        for features in ([feature], (feature, None)):
+            given = {"type": "FeatureCollection", "features": features}
+            assert tin.volume_to(0.0, region=given).area == 1
+            assert len(TIN.from_points(BOX, holes=given).simplices) > 2
+            assert len(from_geometry(given).simplices) == 2
+        with pytest.raises(InputError, match="is not a geometry"):
+            tin.volume_to(0.0, region={"type": "Feature", "geometry": {"type": "Feature"}})
+    rows = {"type": "FeatureCollection", "features": iter([plain, polygon])}
+    assert tin.volumes_to(0.0, rows).area.tolist() == [1, 1]

@@ -36,6 +36,8 @@ _INT32 = np.dtype(np.int32)
 _LARGEST_EXACT_INTEGER = 2**53
 # Points with more columns are interpolated, but not triangulated.
 _MOST_COLUMNS = 8
+# Those that linear interpolation without a triangulation takes.
+_MOST_INTERPOLATED = 64
 _LARGEST_INDEX = 2**31 - 1
 # A larger limit has no effect: no call adds more points than an int32 can number.
 LARGEST_LIMIT = 2**31 - 1
@@ -522,7 +524,7 @@ def _refuse_shape(
         hint = "; transpose it"
         if few is False and len(array) == 3 and array.shape[1] in wanted:
             hint += ', or if these are three points, pass flat="project"'
-    elif array.ndim == 2 and array.shape[1] > wanted[-1] == _MOST_COLUMNS:
+    elif array.ndim == 2 and wanted[-1] == _MOST_COLUMNS < array.shape[1] <= _MOST_INTERPOLATED:
         hint = "; to interpolate between points with more coordinates, use "
         hint += "delone.interpolate.Linear, which does not triangulate them"
     raise ShapeError(f"{name} must have shape {shapes}, got {array.shape}{hint}")

@@ -14,6 +14,8 @@ __all__ = ["agreed", "counted", "gigabytes", "grouped", "listed"]
 
 # Larger numbers are shown in scientific notation.
 _HUGE = 10**15
+# Fewer bytes are shown as they are.
+_TINY = 10_000
 # Fewer GB are shown in MB.
 _SMALL = 0.05
 # Nouns that do not take an s.
@@ -47,7 +49,9 @@ def grouped(count: int) -> str:
 
 
 def gigabytes(size: int) -> str:
-    """Return a number of bytes in GB, or if it is small in MB, with its unit."""
+    """Return a number of bytes in GB, or if it is small in MB or bytes, with its unit."""
+    if size < _TINY:
+        return f"{size:,} bytes"
     if size < _SMALL * 10**9:
         return f"{size / 10**6:,.3g} MB"
     shown = f"{size / 10**9:,.1f}" if size < _HUGE * 10**9 else grouped(size // 10**9)

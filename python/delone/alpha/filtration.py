@@ -74,6 +74,11 @@ class AlphaComplex(Stored):
     KeyboardInterrupt
         Ctrl-C was pressed. No partial result remains.
 
+    Warns
+    -----
+    NearlyFlatWarning
+        From 4-D on: the points lie in a flat except for rounding errors.
+
     See Also
     --------
     concave_hull : One polygon, without a parameter that depends on the density of points.

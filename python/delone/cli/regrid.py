@@ -266,13 +266,17 @@ def _require_fields(regridder: Any, fields: Any, found: Any) -> None:
     """Reject a dataset of which no variable is on the source grid."""
     if _regridded(regridder, fields, found):
         return
-    sizes = {str(n): dict(part.sizes) for n, part in list(fields.data_vars.items())[:3]}
     shape = " x ".join(map(str, regridder.source.grid_shape))
+    sizes = [
+        f"{name!s:.60} has {' x '.join(f'{dim} {n}' for dim, n in part.sizes.items()) or 'none'}"
+        for name, part in fields.data_vars.items()
+    ]
     if not sizes:
         raise Failure("there are no fields to regrid: the file has no variables", Exit.INPUT)
+    more = f" and {len(sizes) - 3} more" if len(sizes) > 3 else ""
     raise Failure(
-        f"no field is on the grid of {shape} cells; variables have {sizes!r:.200}: "
-        "give their dimensions as --dims",
+        f"no field is on the grid of {shape} cells. Dimensions of variables: "
+        f"{', '.join(sizes[:3])}{more}. Give those of the grid as --dims",
         Exit.USAGE,
     )
 

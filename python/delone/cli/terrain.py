@@ -122,7 +122,9 @@ def contours(
     wanted = None if levels is None else numbers(levels, "--levels")
     of_lines: dict[str, Any] = {"index": 5 if index is None else index, "min_length": min_length}
     if bands:
-        _refuse_of_lines(smooth=smooth, min_length=min_length, index=index, labels=labels)
+        _refuse_of_lines(
+            smooth=smooth or None, min_length=min_length or None, index=index, labels=labels
+        )
     if labels is None and label_length is not None:
         raise Failure("--label-length needs --labels", Exit.USAGE)
     if label_length is not None:
@@ -360,9 +362,9 @@ def volume(
 
 
 def _refuse_of_lines(**given: object) -> None:
-    """Reject options that have no meaning for polygons; by default they are 0 or None."""
+    """Reject options that have no meaning for polygons; those that are not given are None."""
     for name, value in given.items():
-        if value not in (None, 0):
+        if value is not None:
             option = f"--{name.replace('_', '-')}"
             raise Failure(f"{option} is for lines, not for --bands", Exit.USAGE)
 

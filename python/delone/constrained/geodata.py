@@ -130,10 +130,9 @@ def _batches(given: Any, name: str) -> Iterator[Any]:
         yield np.asarray(given.geometry.values, dtype=object)
     elif isinstance(getattr(given, "geometries", None), np.ndarray):  # a GeometrySet
         yield from _batches(given.geometries, name)
-    elif isinstance(given, dict):
-        yield from geometries_in(given, name)
-    elif hasattr(given, "__geo_interface__"):
-        yield from geometries_in(given.__geo_interface__, name)
+    elif isinstance(given, dict) or hasattr(given, "__geo_interface__"):
+        for geometry in geometries_in(given, name):
+            yield _object_array([geometry]) if is_shapely(geometry) else geometry
     elif isinstance(given, str | bytes | os.PathLike):
         raise InputError(_string_error(given, name))
     elif not hasattr(given, "__iter__") or isinstance(given, type):
@@ -219,21 +218,37 @@ def _object_array(items: list[Any]) -> NDArray[Any]:
     return array
 
 
-def geometries_in(mapping: Any, name: str) -> Iterator[Mapping[str, Any]]:
-    """Yield the geometries of a mapping in GeoJSON form; a feature without one has an empty one."""
-    kind = _kind_of(mapping, name)
-    if kind == "FeatureCollection":
-        for feature in _listed(mapping, "features", name):
-            yield from geometries_in(feature, name)
-    elif kind == "Feature":
-        if "geometry" not in mapping:
-            raise no_geometry(dict(mapping), name)
-        geometry = mapping["geometry"]
-        empty = {"type": "GeometryCollection", "geometries": []}
-        yield from geometries_in(empty if geometry is None else geometry, name)
+def geometries_in(given: Any, name: str) -> Iterator[Any]:
+    """Yield the geometries of GeoJSON, one for each feature, as mappings or shapely geometries.
+
+    A feature may be None, without a geometry, or an object with ``__geo_interface__``.
+    """
+    if given is None:
+        yield {"type": "GeometryCollection", "geometries": []}
+    elif is_shapely(given):
+        yield given
     else:
-        _listed(mapping, "geometries" if kind == "GeometryCollection" else "coordinates", name)
-        yield mapping
+        mapping = given if isinstance(given, Mapping) else _interface(given, name)
+        kind = mapping.get("type")
+        if kind == "FeatureCollection":
+            for feature in _listed(mapping, "features", name):
+                yield from geometries_in(feature, name)
+        elif kind == "Feature":
+            geometry = mapping.get("geometry", mapping)
+            inner = geometry if isinstance(geometry, Mapping) else None
+            if inner is not None and inner.get("type") in {"Feature", "FeatureCollection"}:
+                raise no_geometry(dict(mapping), name)
+            yield from geometries_in(geometry, name)
+        else:
+            _listed(mapping, "geometries" if kind == "GeometryCollection" else "coordinates", name)
+            yield mapping
+
+
+def _interface(given: Any, name: str) -> Mapping[str, Any]:
+    mapping = getattr(given, "__geo_interface__", None)
+    if isinstance(mapping, Mapping):
+        return mapping
+    raise no_geometry(given, name)
 
 
 def _kind_of(mapping: Any, name: str) -> Any:

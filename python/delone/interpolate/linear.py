@@ -92,6 +92,11 @@ class Linear(Interpolator):
     ShapeError, DtypeError
         Arrays have the wrong shape, or are not numeric.
 
+    Warns
+    -----
+    NearlyFlatWarning
+        From 4-D on, with a mesh: the points lie in a flat except for rounding errors.
+
     Notes
     -----
     At a site the value is reproduced exactly, bit for bit; linear functions are reproduced up to

@@ -193,8 +193,9 @@ def _check_tables(path: Path) -> None:
     except (sqlite3.Error, sqlite3.Warning) as error:
         what = f"its table or view {name!r:.60} is rejected" if name else "it cannot be read"
         raise FileFormatError(
-            f"{path}: {what}: {error!s:.100}. Tables and views that need more than plain SQLite "
-            "are not opened; copy the rows into a plain table"
+            f"{path}: {what}: {error!s:.100}. Tables and views that need more than plain SQLite, "
+            "such as those of SpatiaLite, are not opened; copy the rows into a plain table or a "
+            "GeoPackage"
         ) from error
 
 

@@ -122,5 +122,5 @@ def off_ground(x: float, y: float) -> InputError:
     """Return the error that a line without heights leaves the surface of the points."""
     return InputError(
         f"a line without heights is outside the points at ({x:.10g}, {y:.10g}): give it heights "
-        "there, or clip it to their convex hull"
+        "there, or clip it to the hull of the points"
     )

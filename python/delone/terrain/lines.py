@@ -114,7 +114,8 @@ def _features(given: Any) -> list[Any]:
     if isinstance(given, dict):
         several = given.get("type") == "FeatureCollection"
         features = given.get("features") if several else None
-        return list(features) if isinstance(features, list | tuple) else [given]
+        listed = hasattr(features, "__iter__") and not isinstance(features, dict | str | bytes)
+        return list(features) if listed else [given]
     if is_shapely(given) or _is_line(given):
         return [given]
     if hasattr(given, "__iter__") and not isinstance(given, str | bytes):
@@ -198,9 +199,9 @@ def _of_set(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
 
 def _of_mapping(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
     """Yield the lines of GeoJSON, and of objects with a GeoJSON-like interface."""
-    mapping = given if isinstance(given, dict) else given.__geo_interface__
-    for geometry in geometries_in(mapping, name):
-        yield from _of_geometry(_shape(geometry, name), name, number)
+    for geometry in geometries_in(given, name):
+        shape = geometry if is_shapely(geometry) else _shape(geometry, name)
+        yield from _of_geometry(shape, name, number)
 
 
 def _shape(mapping: Any, name: str) -> Any:

@@ -135,6 +135,8 @@ class Voronoi(Stored, Drawn):
         The points are longitudes and latitudes; `delone.sphere` has diagrams of them.
     CRSWarning
         The reference system of the points or of `clip` is known, and that of the other is not.
+    NearlyFlatWarning
+        From 4-D on: the points lie in a flat except for rounding errors.
     ThinCellWarning
         When measures or polygons are computed: cells are only a few units in the last place wide,
         so rounding makes their areas or volumes meaningless; ``warning.rows`` contains their rows.

@@ -15,7 +15,7 @@ use crate::locate::{Located, Place};
 /// ends in a Delaunay triangulation; in other arrays it may not.
 const BUDGET: usize = 1 << 8;
 
-/// A barycentric coordinate below minus this is negative but for the roundings of many steps.
+/// A barycentric coordinate below minus this is negative, whatever the roundings of many steps are.
 const NEAR: f64 = 1e-6;
 
 /// Walks from simplex `from` to `q`, each time across the facet opposite the least barycentric
@@ -71,8 +71,9 @@ fn least<const N: usize>(l: &[f64; N]) -> usize {
     corner
 }
 
-/// Walks across a facet and on, as long as rounded coordinates `l` show the way; the simplex where it
-/// ends. `b` has the gradients of the coordinates but the first in its columns. At most `budget` steps.
+/// Walks across a facet and on, as long as rounded coordinates `l` show the way, and returns the simplex
+/// where it ends. The columns of `b` are the gradients of all coordinates except the first. At most
+/// `budget` steps.
 #[inline(always)]
 pub fn hurry<const D: usize, const N: usize, const P: usize>(
     given: &Given<D, N>,

@@ -151,7 +151,7 @@ impl Facets<'_> {
         self.neighbors[t][k] as usize >= t && tied[t] >> k & 1 == 0
     }
 
-    /// Adds the ridges; returns the ridge of each edge of facets that owns one.
+    /// Adds the ridges; returns the ridge of each edge that a facet owns.
     fn ridges(
         &self,
         tied: &[u8],

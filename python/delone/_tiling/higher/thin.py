@@ -1,4 +1,4 @@
-"""Warn of points that are in a flat but for rounding, such as fractions that add up to one.
+"""Warn of points that are in a flat except for rounding, such as fractions that add up to one.
 
 The points span all dimensions, but by rounding errors only, so simplices are very thin. The normal
 of the best flat is the last singular vector of the centered columns, each divided by its extent.
@@ -22,6 +22,8 @@ __all__ = ["NearlyFlatWarning", "warn_of_rounding"]
 # Distances from the flat in units of what one rounding of each coordinate can cause. Seen: 0.3 to
 # 5 where columns are rounded sums of others, and more than 10**12 where they are not.
 _ROUNDINGS = 64.0
+# Nothing is said where so many roundings are a larger part of the extent of a column than this.
+_COARSE = 1e-3
 
 
 class NearlyFlatWarning(UserWarning):
@@ -42,14 +44,15 @@ class NearlyFlatWarning(UserWarning):
 
 
 def warn_of_rounding(points: Floats) -> None:
-    """Warn if points that span all dimensions are in a flat but for rounding."""
+    """Warn if points that span all dimensions are in a flat except for rounding."""
     d = points.shape[1]
     with np.errstate(all="ignore"):
         centered = points - points.mean(axis=0)
         extent = np.abs(centered).max(axis=0)
         scaled = centered / extent
         unit = np.finfo(np.float64).eps * np.abs(points).max(axis=0) / extent
-        if not np.isfinite(scaled).all() or not np.isfinite(unit).all():
+        # Coordinates of few bits beside a large offset may be exact, and a rounding is large there.
+        if not np.isfinite(scaled).all() or not _ROUNDINGS * unit.max() < _COARSE:
             return
         normal = np.linalg.svd(np.linalg.qr(scaled, mode="r"))[2][-1]
         distance = np.abs(scaled @ normal).max()
