@@ -113,7 +113,7 @@ def _features(given: Any) -> list[Any]:
         given = getattr(given, "__geo_interface__", given)
     if isinstance(given, dict):
         several = given.get("type") == "FeatureCollection"
-        features = given.get("features") if several else None
+        features: Any = given.get("features") if several else None
         listed = hasattr(features, "__iter__") and not isinstance(features, dict | str | bytes)
         return list(features) if listed else [given]
     if is_shapely(given) or _is_line(given):
