@@ -7,6 +7,7 @@ from contextlib import closing, suppress
 
 import geopandas
 import numpy as np
+import pyogrio
 import pytest
 import rasterio
 import shapely
@@ -224,3 +225,20 @@ def test_notes_of_gdal_are_not_read(package, canary):
         found = read_points(package, attributes=["a"]).attributes["a"]
     assert found.tolist() == [11, 12, 13]
     assert not canary.was_opened
+
+
+@pytest.mark.parametrize("suffix", [".gpkg", ".sqlite"])
+def test_databases_without_geometries_say_so(tmp_path, suffix):
+    path = tmp_path / f"a{suffix}"
+    if suffix == ".gpkg":
+        pyogrio.write_dataframe(FRAME.drop(columns="geometry"), path, layer="t")
+    else:
+        execute(path, "CREATE TABLE t (a)", "INSERT INTO t VALUES (1)")
+    for layer in (None, "t"):
+        with pytest.raises(FileFormatError, match="has no column of geometries"):
+            read_points(path, layer=layer)
+    if suffix == ".sqlite":
+        path.unlink()
+        execute(path, "CREATE TABLE t (a)", "DROP TABLE t")
+        with pytest.raises(FileFormatError, match="contains no layers"):
+            read_points(path)

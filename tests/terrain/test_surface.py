@@ -8,7 +8,13 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from delone import ConflictingValuesError, CrossingSegmentsError, InputError, NonFiniteError
+from delone import (
+    ConflictingValuesError,
+    CrossingSegmentsError,
+    DtypeError,
+    InputError,
+    NonFiniteError,
+)
 from delone.interpolate import Grid
 from delone.io import write_mesh
 from delone.terrain import TIN, slopes
@@ -356,3 +362,23 @@ def test_rasters_of_triangles_are_those_of_the_triangles(monkeypatch, what):
     right = np.where(simplex < 0, np.nan, of_triangles[simplex])
     assert np.array_equal(found.values, right, equal_nan=True)
     assert (simplex < 0).any() and len(np.unique(simplex)) > 200
+
+
+@pytest.mark.parametrize("what", ["height", "slope", "aspect", "hillshade"])
+@pytest.mark.parametrize(
+    ("x", "words"),
+    [
+        ([], "x must have shape"),
+        ([1, np.nan], "x must be finite and ascending"),
+        ([2, 1], "x must be finite and ascending"),
+        (["a"], "x must hold real numbers"),
+        ([[1, 2]], "x must have shape"),
+    ],
+)
+def test_nodes_of_rasters_are_checked(what, x, words):
+    tin = TIN.from_points([(0, 0, 0), (4, 0, 4), (4, 4, 4), (0, 4, 0)])
+    with pytest.raises((InputError, DtypeError), match=words):
+        tin.raster(what, x=x, y=[1, 2])
+    if what != "hillshade":
+        with pytest.raises(InputError, match='azimuth: these options are for what="hillshade"'):
+            tin.raster(what, resolution=1, azimuth=10)

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from delone._tiling.triangulation import Triangulation
     from delone.periodic import PeriodicDelaunay
 
-__all__ = ["Grid", "grid", "raster_nodes", "require_memory"]
+__all__ = ["Grid", "as_nodes", "grid", "raster_nodes", "require_memory"]
 
 # Queries per block: few enough for their coordinates and weights to stay in the cache.
 _BLOCK = 1 << 18
@@ -281,7 +281,7 @@ def _nodes(  # noqa: PLR0917
         return raster_nodes(made._box, resolution=resolution, shape=shape, bounds=bounds)
     if x is None or y is None or not (resolution is None and shape is None and bounds is None):
         raise InputError("give both x and y, without resolution, shape or bounds")
-    return _ascending(x, "x"), _ascending(y, "y")
+    return as_nodes(x, "x"), as_nodes(y, "y")
 
 
 def raster_nodes(
@@ -368,7 +368,8 @@ def _bounded(bounds: Sequence[float]) -> tuple[list[float], list[float]]:
     return box[:2], box[2:]
 
 
-def _ascending(nodes: ArrayLike, name: str) -> Floats:
+def as_nodes(nodes: ArrayLike, name: str) -> Floats:
+    """Return the nodes of a raster along one axis, finite and ascending."""
     given = as_plain_array(nodes, name)
     require_real(given, name)
     array = given.astype(np.float64)

@@ -104,6 +104,11 @@ def _read(
     with _corrupt_is_an_error(source), admitted(path) as name:
         layer = _layer(pyogrio, name, layer, path)
         facts = _facts(pyogrio, name, layer, path)
+        if facts["geometry_type"] is None:
+            raise FileFormatError(
+                f"{source}: {layer or 'its table'} has no column of geometries; write the "
+                "coordinates to a CSV or Parquet file to read them as points"
+            )
         fields = list(facts["fields"])
         wanted = (*_height(columns), *(attributes or ()))
         kept = [fields[find_column(fields, column, source)] for column in wanted]
@@ -210,6 +215,8 @@ def _layer(pyogrio: Any, name: str, layer: str | None, path: Path) -> str | None
     if layer is not None and path.suffix.lower() in SUFFIXES:
         raise FileFormatError(f"{path}: compressed files of geometries have no layers")
     names = [str(found) for found, _ in pyogrio.list_layers(name)]
+    if not names:
+        raise without(path, "layers")
     if layer is not None and layer not in names:
         raise FileFormatError(
             f"{path} has no layer {layer!r:.80}; its layers are {', '.join(names)}"

@@ -10,7 +10,7 @@ from delone._base.arrays import as_callback, as_choice, as_queries
 from delone._base.numbers import as_between, as_finite, as_nonnegative
 from delone._tiling import measures
 from delone.errors import InputError
-from delone.interpolate.raster import Grid, raster_nodes, require_memory
+from delone.interpolate.raster import Grid, as_nodes, raster_nodes, require_memory
 from delone.terrain.surface import on_surface
 
 if TYPE_CHECKING:
@@ -164,8 +164,10 @@ def measure(slopes: Floats, what: str, light: dict[str, float]) -> Floats:
 
 def _nodes(tin: Surface, options: dict[str, Any]) -> tuple[Floats, Floats]:
     if "x" in options and "y" in options and len(options) == 2:
-        return tuple(np.asarray(options[name], dtype=np.float64) for name in "xy")  # type: ignore[return-value]
+        return as_nodes(options["x"], "x"), as_nodes(options["y"], "y")
     unknown = set(options) - {"resolution", "shape", "bounds"}
+    if unknown & set(_LIGHT):
+        raise InputError(f'{", ".join(sorted(unknown))}: these options are for what="hillshade"')
     if unknown:
         raise InputError(
             f"{', '.join(sorted(unknown))}: give resolution, shape and bounds, or x and y"
