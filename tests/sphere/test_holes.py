@@ -11,6 +11,7 @@ import pytest
 
 from delone import sphere
 from delone.sphere import Grid
+from delone.sphere.holes import _left_of_arcs
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -265,6 +266,58 @@ def test_without_cells_and_with_overlaps() -> None:
     assert (two.holes, two.rims, two.slivers) == (None, (), 0)
     assert "hole" not in repr(two)
     assert Grid.from_mesh(lonlat=[quad(0, 0, 9, 9), quad(9, 9, 19, 19)]).validate().holes == 1
+
+
+def turned_by(seed: int) -> Floats:
+    """A rotation; none for seed 0."""
+    if not seed:
+        return np.eye(3)
+    turn = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
+    return np.asarray(turn * np.sign(np.linalg.det(turn)))
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("step", [15, 30, 90])
+def test_half_spheres_and_lunes(step: int, seed: int) -> None:
+    # The ring around the hole has opposite corners.
+    for west_east, south_north in (
+        ((0, 360), (0, 90)),
+        ((0, 360), (-90, 0)),
+        ((0, 180), (-90, 90)),
+        ((0, 270), (-90, 90)),
+        ((30, 120), (-90, 90)),
+    ):
+        lon, lat = (np.arange(a, b + 1, step) for a, b in (west_east, south_north))
+        vectors, starts, _ = Grid.from_curvilinear(*np.meshgrid(lon, lat)).rings
+        faults = Grid.from_mesh(vectors @ turned_by(seed), starts).validate()
+        assert (faults.holes, len(faults.rims), faults.slivers) == (1, 1, 0)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_an_octahedron_without_some_faces(seed: int) -> None:
+    signs = np.array(np.meshgrid([1, -1], [1, -1], [1, -1])).reshape(3, 8).T
+    faces = np.stack([np.diag(each) for each in signs.tolist()]) @ turned_by(seed)
+    for left_out in [*combinations(range(8), 2), (0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 4, 5)]:
+        # Faces with two common signs share a side, those with one a corner.
+        apart = len(left_out) == 2 and (signs[left_out[0]] == -signs[left_out[1]]).all()
+        kept = [k for k in range(8) if k not in left_out]
+        faults = Grid.from_mesh(faces[kept], winding="smaller").validate()
+        assert (faults.holes, faults.slivers) == (2 if apart else 1, 0)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_area_of_a_ring_does_not_depend_on_its_first_corner(seed: int) -> None:
+    x, y, z = turned_by(seed)
+    ring = [x, y, -x, -y]
+    for corners, area in (([x, y, -x, z], np.pi), (ring, 2 * np.pi), ([x, y, z], np.pi / 2)):
+        for first in range(len(corners)):
+            found = _left_of_arcs(np.roll(corners, first, axis=0))
+            assert abs(found) == pytest.approx(area, abs=1e-14)
+    # Along a half circle and back, at a distance of rounding errors.
+    there = [np.cos(a) * x + np.sin(a) * y for a in np.linspace(0, np.pi, 30)]
+    back = [p + 1e-16 * z for p in there[-2:0:-1]]
+    for first in (0, 7, 30, 45):
+        assert abs(_left_of_arcs(np.roll([*there, *back], first, axis=0))) < 1e-14
 
 
 def test_vectors_of_different_lengths() -> None:

@@ -213,9 +213,41 @@ def _on_arcs(places: Floats, ends: Rows) -> tuple[Rows, Rows, Rows]:
 
 
 def _left_of_arcs(corners: Floats) -> float:
-    """Return the area on the left of a ring of arcs, up to whole spheres."""
-    p, q = corners[1:-1], corners[2:]
+    """Return the area on the left of a ring of arcs, up to whole spheres.
+
+    The area is the sum of triangles that have a common corner, the pivot. The arc from the pivot to
+    its opposite is not determined, so ways to corners around that lead through a second pivot.
+    """
     pivot = corners[0]
+    far = corners @ pivot < -0.5
+    second = _second_pivot(corners, far)
+    p, q = corners, np.roll(corners, -1, axis=0)
+    first, last = far, np.roll(far, -1)
+    total = _triangles(pivot, p[~first & ~last], q[~first & ~last])
+    total += _triangles(second, p[first | last], q[first | last])
+    # Where the ring comes near the opposite of the pivot, or leaves it, both pivots have a part.
+    enter, leave = p[~first & last], q[first & ~last]
+    total += _triangles(pivot, enter, np.broadcast_to(second, enter.shape))
+    total += _triangles(pivot, np.broadcast_to(second, leave.shape), leave)
+    return total - 4 * np.pi * round(total / (4 * np.pi))
+
+
+def _second_pivot(corners: Floats, far: Bools) -> Floats:
+    """Return a direction at 90 degrees from the first corner, opposite to none where `far` changes.
+
+    Of 16 directions, it is the one farthest from the opposites of these corners.
+    """
+    pivot = corners[0]
+    across = np.cross(pivot, np.eye(3)[np.argmin(np.abs(pivot))])
+    across /= np.linalg.norm(across)
+    turn = np.arange(16)[:, None] * np.pi / 8
+    around = np.cos(turn) * across + np.sin(turn) * np.cross(pivot, across)
+    ends = corners[~far & (np.roll(far, 1) | np.roll(far, -1))]
+    return around[np.argmax((around @ ends.T).min(axis=1, initial=1.0))]
+
+
+def _triangles(pivot: Floats, p: Floats, q: Floats) -> float:
+    """Return the sum of the areas, positive if on the left, of triangles with a common corner."""
     # Differences keep the digits of small triangles.
     across = np.cross(p - pivot, q - pivot) @ pivot
     along = 1 + p @ pivot + q @ pivot + (p * q).sum(axis=1)
