@@ -99,11 +99,10 @@ ALLOWED: dict[str, dict[str, str]] = {
     "sphere/flat.py": {"np.dot(tail[:2], head[:2]) > 0": EXACT, "each.area > 0": EMPTY},
     # Documented: the report of cells that overlap, of which none is changed.
     "sphere/grid_cells.py": {"found.areas > _SHARED * small": WANTED},
-    # Documented: rings around rounding errors are counted apart. What leads back to the start of a
-    # side only selects the rings that are measured.
+    # Documented: rings around rounding errors are counted apart.
     "sphere/holes.py": {
-        "abs(size(row[::-1])) <= _ROUNDING * areas[beside].min()": WANTED,
-        "squares[best] >= length": FILTER,
+        "abs(size(row[::-1])) <= ROUNDING * areas[beside].min()": WANTED,
+        "abs(area) > NARROW / 2 * around": WANTED,
     },
     "sphere/interpolation.py": {"owner._distance(xi) <= limit": WANTED},
     # Documented: the caller asks for the smaller side, and sides of rings decide within _HALF of
@@ -127,6 +126,12 @@ ALLOWED: dict[str, dict[str, str]] = {
     "sphere/nearby.py": {
         "dot(cross(normal, a), query) > 0": EXACT,
         "dot(cross(b, normal), query) > 0": EXACT,
+    },
+    # Documented: the report of holes counts corners within this limit of a side as on it, and
+    # corners within it of each other as one; no cell is changed.
+    "sphere/near_sides.py": {
+        "gap * reach <= 2 * ROUNDING * area": WANTED,
+        "size <= np.maximum(ROUNDING * area, width)": WANTED,
     },
     "sphere/outside.py": {
         "queries @ np.cross(normal, a).T > 0": VALUE,

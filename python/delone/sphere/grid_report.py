@@ -79,18 +79,23 @@ class GridFaults(ReadOnly):
         The fraction of the sphere that the cells cover, where overlaps count twice.
     holes : int or None
         The number of holes: connected parts of the sphere outside all cells. Those that meet at a
-        corner are one. None if cells overlap.
+        corner are one. None if cells overlap, or if sides cross.
     rims : tuple of ndarray of int64
         For each closed ring of sides that have a cell on one side only, the cells along it,
         ascending. Cells that have no side in common, such as those of islands, have different
         rings, so a hole can have several.
     slivers : int
-        Closed rings around less than 1e-12 of the smallest cell along them, such as those between
-        cells whose corners are rounded. They are neither holes nor rims.
+        Gaps and overlaps of less than 1e-12 of the smallest cell along them, or narrower than 2e-15
+        radians, such as those between cells whose corners are rounded: closed rings, and chains of
+        sides that rounding puts beside each other. They are neither holes nor rims.
 
     Notes
     -----
-    Rings follow from common corners, and from corners in sides of other cells, by exact signs.
+    Rings follow from common corners, and from corners in sides of other cells. A corner is in a
+    side if it is within 2e-15 radians of it, or if its triangle with the side is less than 1e-12 of
+    the smallest cell beside them; corners that are this close to each other are one. Beyond these
+    limits, exact signs decide. If sides of cells cross that share less than 1e-12 of the smaller
+    one, the rings are not known: `holes` is None, and `rims` is empty.
 
     Examples
     --------
@@ -127,4 +132,6 @@ class GridFaults(ReadOnly):
             for count, what in ((self.holes, "hole"), (self.slivers, "sliver"))
             if count
         )
+        if self.holes is None and not len(self.overlapping):
+            more = ", holes not counted because sides cross"
         return f"<GridFaults: {pairs}, {100 * self.covered:.6g} % of the sphere{more}>"

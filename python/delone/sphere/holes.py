@@ -2,8 +2,10 @@
 
 Cells that have a side in common, with the same ends, are joined there. The remaining sides have a
 cell on one side only, and form closed rings around the holes. At a corner, a ring passes all cells
-that are joined around it, so it continues with a side of the last one: no angle is compared. A
-corner in a side of another cell divides that side first, which exact signs decide.
+that are joined around it, so it continues with a side of the last one. A corner in a side of
+another cell divides that side first. Corners that are closer to a side, or to another corner, than
+rounding errors count as on it: `near_sides` has the limits. Exact signs decide the rest, and
+nothing is counted where sides cross.
 
 Joined cells form surfaces without handles, since they lie on the sphere. A surface with r rings
 separates the rest into r parts, so by Alexander duality the rest of the sphere has one part more
@@ -22,6 +24,8 @@ from delone.errors import CrossingSegmentsError
 from delone.sphere.constrained import ConstrainedDelaunay
 from delone.sphere.coordinates import units_of
 from delone.sphere.crossings import in_order
+from delone.sphere.exact import turns
+from delone.sphere.near_sides import NARROW, ROUNDING, beside, merged
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,15 +34,11 @@ if TYPE_CHECKING:
 
 __all__ = ["Holes", "holes_between_arcs", "holes_between_rows"]
 
-# Rings around less than this part of the smallest cell beside them are rounding errors, as
-# overlaps of cells are.
-_ROUNDING = 1e-12
-
 
 class Holes(NamedTuple):
     """The number of holes, the cells along each of their rings, and rings of rounding errors."""
 
-    # None if cells overlap.
+    # None if cells overlap, or sides cross.
     number: int | None
     rims: tuple[Rows, ...]
     slivers: int
@@ -63,12 +63,16 @@ class _Sides(NamedTuple):
 
     def distinct(self) -> _Sides:
         """Return the sides without those that have no length, and without rings of two sides."""
-        sides = self
-        if len(sides.ring):
-            kept = sides.start != sides.start[sides.following()]
-            sides = _Sides(sides.start[kept], sides.ring[kept])
-        long = np.bincount(sides.ring)[sides.ring] > 2 if len(sides.ring) else sides.ring > 0
-        return _Sides(sides.start[long], sides.ring[long])
+        kept = self.lasting()
+        return _Sides(self.start[kept], self.ring[kept])
+
+    def lasting(self) -> Rows:
+        """Return the rows of sides that have a length and are not in rings of two sides."""
+        if not len(self.ring):
+            return np.empty(0, dtype=np.int64)
+        kept = np.flatnonzero(self.start != self.start[self.following()])
+        ring = self.ring[kept]
+        return kept[np.bincount(ring, minlength=1)[ring] > 2]
 
     def twins(self) -> Rows:
         """Return for each side the opposite one of another cell, or -1."""
@@ -85,6 +89,12 @@ class _Sides(NamedTuple):
         found[order[first]], found[order[first + 1]] = order[first + 1], order[first]
         return found
 
+    def repeated(self) -> bool:
+        """Whether several sides without an opposite have the same ends."""
+        lone = self.twins() < 0
+        ends = np.sort(np.column_stack((self.start, self.start[self.following()]))[lone], axis=1)
+        return len(np.unique(ends, axis=0)) < len(ends)
+
     def divided(self, at: Rows, vertices: Rows) -> _Sides:
         """Return sides with vertices in them; several for one side are in their order along it."""
         start = np.insert(self.start, at + 1, vertices)
@@ -97,8 +107,8 @@ def holes_between_arcs(
     """Return the holes between polygons; `owner` is the cell of each polygon."""
     vectors, rings, cells, holes = arrays
     count = len(rings) - 1
-    alone = np.arange(count + 1, dtype=np.int64), np.zeros(count, dtype=np.bool_)
-    each = _core.CellGrid.polygons(vectors, rings, *alone).check(False, as_workers(workers))
+    single = np.arange(count + 1, dtype=np.int64), np.zeros(count, dtype=np.bool_)
+    each = _core.CellGrid.polygons(vectors, rings, *single).check(False, as_workers(workers))
     lengths = np.where(each.faults == 1, 0, np.diff(rings))
     ring = np.repeat(np.arange(count), lengths)
     within = np.arange(len(ring)) - np.repeat(np.cumsum(lengths) - lengths, lengths)
@@ -109,17 +119,24 @@ def holes_between_arcs(
     places, start = _distinct(units[rows])
     sides = _Sides(start, ring).distinct()
     piece = np.repeat(np.arange(len(cells) - 1), np.diff(cells))
+    sides, slivers = _joined(sides, places, np.minimum(areas[owner[piece]], each.areas))
     lone = np.flatnonzero(sides.twins() < 0)
     if len(lone):
         ends = np.column_stack((sides.start, sides.start[sides.following()]))[lone]
-        same, row, vertex = _on_arcs(places, ends)
+        exact = _on_arcs(places, ends)
+        if exact is None:
+            return Holes(None, (), 0)
+        same, row, vertex = exact
         sides = sides.divided(lone[row], vertex)
         sides = sides._replace(start=same[sides.start]).distinct()
-    row, vertex, slivers = _beside_arcs(sides, places, areas[owner[piece]])
-    sides = sides.divided(row, vertex)
+    if sides.repeated():
+        return Holes(None, (), 0)
 
     def size(row: Rows) -> float:
-        return _left_of_arcs(places[sides.start[row]])
+        corners = places[sides.start[row]]
+        area = _left_of_arcs(corners)
+        around = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1).sum()
+        return area if abs(area) > NARROW / 2 * around else 0.0
 
     found = _holes(sides, piece, owner, areas, size)
     return found._replace(slivers=found.slivers + slivers)
@@ -136,80 +153,71 @@ def _distinct(vectors: Floats) -> tuple[Floats, Rows]:
     return sorted_vectors[first], of
 
 
-def _beside_arcs(sides: _Sides, places: Floats, areas: Floats) -> tuple[Rows, Rows, int]:
-    """Return sides and the corners that rounding puts beside them, in order, and how many sides.
+def _joined(sides: _Sides, places: Floats, areas: Floats) -> tuple[_Sides, int]:
+    """Return sides with the corners in them that rounding errors put beside them, and how many.
 
-    From the end of a side, this follows sides of other cells back to its start. If they enclose no
-    more than rounding errors, their corners count as being on the side. `areas` are those of the
-    cells of rings.
+    Corners that are the same but for rounding errors are merged first. Each chain of sides that
+    meet only so, between corners that they share exactly, counts once. `areas` are those of rings.
     """
-    start, end = sides.start, sides.start[sides.following()]
-    lone = np.flatnonzero(sides.twins() < 0)
-    lone = lone[np.argsort(start[lone], kind="stable")]
-    low = np.searchsorted(start[lone], end[lone])
-    high = np.searchsorted(start[lone], end[lone], side="right")
-    # A single further side that does not lead back belongs to the same ring.
-    once = places[end[lone[np.minimum(low, len(lone) - 1)]]]
-    last, first = places[end[lone]], places[start[lone]]
-    back = first - (first * last).sum(axis=1)[:, None] * last
-    tried = (high - low > 1) | ((back * (once - last)).sum(axis=1) > 0)
-    found: list[int] = []
-    vertices: list[int] = []
-    count = 0
-    for k in np.flatnonzero(tried).tolist():
-        side = int(lone[k])
-        path: list[int] = []
-        at, goal = k, places[start[side]]
-        left = length = float(((goal - places[end[side]]) ** 2).sum())
-        # Each turn leads nearer to the start of the side, by shorter steps than the whole side.
-        while left:
-            here = places[end[lone[at]]]
-            along = places[end[lone[low[at] : high[at]]]] - here
-            squares = (along**2).sum(axis=1)
-            # The directions in which sides and the way back start.
-            flat = along - (along @ here)[:, None] * here
-            best = int(np.argmax(flat @ (goal - here) / np.sqrt((flat**2).sum(axis=1))))
-            at = int(low[at]) + best
-            rest = float(((goal - places[end[lone[at]]]) ** 2).sum())
-            if rest >= left or squares[best] >= length:
-                break
-            left = rest
-            path.append(int(lone[at]))
-        ring = [side, *path]
-        least = _ROUNDING * areas[sides.ring[ring]].min()
-        if left or abs(_left_of_arcs(places[start[ring]])) > least:
-            continue
-        found += [side] * (len(path) - 1)
-        vertices += start[path[:0:-1]].tolist()
-        count += 1
-    return np.array(found, dtype=np.int64), np.array(vertices, dtype=np.int64), count
+    lone = sides.twins() < 0
+    if not lone.any():
+        return sides, 0
+    ends = np.column_stack((sides.start, sides.start[sides.following()]))
+    same = merged(places, ends[lone], areas[sides.ring[lone]])
+    moved = lone & (same[ends] != ends).any(axis=1)
+    sides = sides._replace(start=same[sides.start])
+    kept = sides.lasting()
+    sides, lone, moved = _Sides(sides.start[kept], sides.ring[kept]), lone[kept], moved[kept]
+    alone = np.flatnonzero(sides.twins() < 0)
+    at, vertex = np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
+    if len(alone):
+        ends = np.column_stack((sides.start, sides.start[sides.following()]))[alone]
+        row, vertex = beside(places, ends, areas[sides.ring[alone]])
+        vertex = _ordered(places, ends, row, vertex)
+        at = alone[row]
+        off = turns(places[ends[row, 0]], places[ends[row, 1]], places[vertex]) != 0
+        moved[at[off]] = True
+    divided = sides.divided(at, vertex)
+    # The side of each part, and chains of sides whose parts are opposite.
+    of = np.insert(np.arange(len(sides.ring)), at + 1, at)
+    twin = divided.twins()
+    part = np.flatnonzero(twin >= 0)
+    part = part[lone[of[part]]]
+    pairs = np.column_stack((of[part], of[twin[part]])).astype(np.int32)
+    chain = np.asarray(_core.graph_components(pairs, len(sides.ring)))
+    return divided, len(np.unique(chain[pairs[moved[pairs].any(axis=1), 0]]))
 
 
-def _on_arcs(places: Floats, ends: Rows) -> tuple[Rows, Rows, Rows]:
-    """Return equal places, and arcs with the places that lie exactly on them, in their order."""
-    used, local = np.unique(ends, return_inverse=True)
-    local = local.reshape(-1, 2).astype(np.int32)
-    rows = np.arange(len(local))
-    while True:
-        try:
-            # The axes let all places be within a hemisphere.
-            mesh = ConstrainedDelaunay(
-                xyz=np.concatenate((places[used], np.eye(3), -np.eye(3))), segments=local[rows]
-            )
-            break
-        except CrossingSegmentsError as error:
-            # Such cells overlap, by rounding or not at all little. Each turn leaves arcs out.
-            rows = np.delete(rows, np.unique(np.asarray(error.pairs).ravel()))
-    same = np.arange(len(places))
-    same[used] = used[mesh.duplicate_of[: len(used)]]
-    through = mesh._made.through[mesh._made.through[:, 1] < len(used)]
-    row, vertex = rows[through[:, 0]], used[through[:, 1]]
-    order = np.argsort(row, kind="stable")
-    row, vertex = row[order], vertex[order]
+def _ordered(places: Floats, ends: Rows, row: Rows, vertex: Rows) -> Rows:
+    """Return the vertices of each arc in their order along it; `row` ascends."""
+    vertex = vertex.copy()
     first, counts = np.unique(row, return_index=True, return_counts=True)[1:]
     for k, n in zip(first[counts > 1].tolist(), counts[counts > 1].tolist(), strict=True):
         vertex[k : k + n] = in_order(places, ends[row[k]].tolist(), vertex[k : k + n].tolist())
-    return same, row, vertex
+    return vertex
+
+
+def _on_arcs(places: Floats, ends: Rows) -> tuple[Rows, Rows, Rows] | None:
+    """Return equal places, and arcs with the places that lie exactly on them, in their order.
+
+    None if arcs cross.
+    """
+    used, local = np.unique(ends, return_inverse=True)
+    local = local.reshape(-1, 2).astype(np.int32)
+    try:
+        # The axes let all places be within a hemisphere.
+        mesh = ConstrainedDelaunay(
+            xyz=np.concatenate((places[used], np.eye(3), -np.eye(3))), segments=local
+        )
+    except CrossingSegmentsError:
+        return None
+    same = np.arange(len(places))
+    same[used] = used[mesh.duplicate_of[: len(used)]]
+    through = mesh._made.through[mesh._made.through[:, 1] < len(used)]
+    row, vertex = through[:, 0].astype(np.int64), used[through[:, 1]]
+    order = np.argsort(row, kind="stable")
+    row, vertex = row[order], vertex[order]
+    return same, row, _ordered(places, ends, row, vertex)
 
 
 def _left_of_arcs(corners: Floats) -> float:
@@ -220,6 +228,8 @@ def _left_of_arcs(corners: Floats) -> float:
     """
     pivot = corners[0]
     far = corners @ pivot < -0.5
+    if not far.any():
+        return _within_a_sphere(_triangles(pivot, corners[1:-1], corners[2:]))
     second = _second_pivot(corners, far)
     p, q = corners, np.roll(corners, -1, axis=0)
     first, last = far, np.roll(far, -1)
@@ -229,7 +239,12 @@ def _left_of_arcs(corners: Floats) -> float:
     enter, leave = p[~first & last], q[first & ~last]
     total += _triangles(pivot, enter, np.broadcast_to(second, enter.shape))
     total += _triangles(pivot, np.broadcast_to(second, leave.shape), leave)
-    return total - 4 * np.pi * round(total / (4 * np.pi))
+    return _within_a_sphere(total)
+
+
+def _within_a_sphere(area: float) -> float:
+    """Return an area without whole spheres, at most a half sphere in size."""
+    return area - 4 * np.pi * round(area / (4 * np.pi))
 
 
 def _second_pivot(corners: Floats, far: Bools) -> Floats:
@@ -243,7 +258,8 @@ def _second_pivot(corners: Floats, far: Bools) -> Floats:
     turn = np.arange(16)[:, None] * np.pi / 8
     around = np.cos(turn) * across + np.sin(turn) * np.cross(pivot, across)
     ends = corners[~far & (np.roll(far, 1) | np.roll(far, -1))]
-    return around[np.argmax((around @ ends.T).min(axis=1, initial=1.0))]
+    best: Floats = around[np.argmax((around @ ends.T).min(axis=1, initial=1.0))]
+    return best
 
 
 def _triangles(pivot: Floats, p: Floats, q: Floats) -> float:
@@ -393,7 +409,7 @@ def _holes(
         # Sides of holes have the hole on their right.
         row = lone[ring]
         beside = np.unique(cell[row])
-        if abs(size(row[::-1])) <= _ROUNDING * areas[beside].min():
+        if abs(size(row[::-1])) <= ROUNDING * areas[beside].min():
             slivers += 1
         else:
             rims.append(beside)
