@@ -266,17 +266,20 @@ class GridCells(Stored):
         return sealed(found)
 
     def validate(self) -> GridFaults:
-        """Find cells that overlap.
+        """Find cells that overlap, and holes between cells.
 
         Returns
         -------
         GridFaults
-            Truthy if no two cells share more than 1e-12 of the smaller one.
+            Truthy if no two cells share more than 1e-12 of the smaller one. It has the pairs that
+            do, the number of `holes`, the cells along each ring of sides with a cell on one side
+            only (`rims`), and the number of gaps from rounding errors (`slivers`).
 
         Notes
         -----
         This computes the overlaps of the grid with itself. Holes are not faults: a regional grid
-        has one, the rest of the sphere.
+        has one, the rest of the sphere. Corners closer to a side than rounding errors count as on
+        it, within the limits of `GridFaults`. `holes` is None if cells overlap, or if sides cross.
 
         Examples
         --------
