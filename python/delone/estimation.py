@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ from delone._base.counting import grouped
 from delone._base.immutable import own_copy
 from delone._tiling.higher.dimension import MOST
 from delone._tiling.higher.size import peak_bytes, sample_size
+from delone._tiling.higher.thin import NearlyFlatWarning
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError
 
@@ -145,7 +147,10 @@ def _sampled(points: Floats, order: np.ndarray, size: int) -> Delaunay:
     """Triangulate the first `size` points of an order, or more if these do not span a simplex."""
     while True:
         try:
-            return Delaunay(points[order[:size]], workers=1, planar=True)
+            with warnings.catch_warnings():
+                # Each sample of points that are nearly flat is, too; the triangulation itself says so.
+                warnings.simplefilter("ignore", NearlyFlatWarning)
+                return Delaunay(points[order[:size]], workers=1, planar=True)
         except DegenerateInputError:
             if size == len(points):
                 raise

@@ -80,6 +80,13 @@ def test_labels_of_contours(folder, figures, command):
     ):
         code, _, message = command(*call, *options)
         assert code != 0 and words in message
+    levels = [*CALL[:2], "--levels", 10]
+    for options, words in (
+        (("--base", 3), "--base is for --interval, not for --levels"),
+        (("--index", 2), "--index is for --interval"),
+    ):
+        code, _, message = command(*levels, *options, "-o", "c.shp")
+        assert code == 2 and words in message
     for length in ("-5", "0", "nan", "inf"):
         code, _, message = command(
             *CALL, "--label-length", length, "--labels", "c.gpkg", "-o", "c.shp"

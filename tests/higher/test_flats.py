@@ -377,6 +377,7 @@ def test_points_that_rounding_takes_out_of_a_flat_are_told() -> None:
             made(noisy)
             made(np.vstack((np.zeros(5), np.eye(5))))
             made(1e300 * random.random((12, 5)))
+            delone.estimate(fractions)
             made(1e15 + random.integers(0, 9, (40, 5)))
     with pytest.warns(delone.NearlyFlatWarning, match=told) as caught:
         delone.RegularTriangulation(fractions, random.random(60) / 100)

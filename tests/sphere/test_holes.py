@@ -352,6 +352,15 @@ def test_cells_of_several_rings() -> None:
     apart = shapely.MultiPolygon([shapely.box(0, 0, 9, 9), shapely.box(180, 0, 190, 9)])
     faults = Grid.from_polygons([apart, shapely.box(80, 0, 90, 9)]).validate()
     assert (faults.holes, [rim.tolist() for rim in faults.rims]) == (1, [[0], [0], [1]])
+    near = shapely.MultiPolygon([shapely.box(0, 0, 5, 5), shapely.box(10, 0, 15, 5)])
+    faults = Grid.from_polygons([near]).validate()
+    assert (faults.holes, [rim.tolist() for rim in faults.rims]) == (1, [[0], [0]])
+    faults = Grid.from_polygons([near, shapely.box(5, 0, 10, 5)]).validate()
+    assert (faults.holes, [rim.tolist() for rim in faults.rims]) == (1, [[0, 1]])
+    ring = shapely.Polygon(quad(0, 0, 10, 10), [quad(2, 2, 8, 8)])
+    island = shapely.MultiPolygon([ring, shapely.box(4, 4, 6, 6)])
+    faults = Grid.from_polygons([island]).validate()
+    assert (faults.holes, [rim.tolist() for rim in faults.rims]) == (2, [[0]] * 3)
     # An ocean as one cell: its holes are the land.
     land = [quad(0, 0, 20, 20), quad(60, -20, 90, 0)]
     ocean = shapely.Polygon([(0, -65), (120, -65), (240, -65)], land)

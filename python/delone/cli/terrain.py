@@ -74,7 +74,9 @@ def contours(
     levels: Annotated[
         str | None, typer.Option(help="Levels, instead of an interval, such as 10,12.5,15.")
     ] = None,
-    base: Annotated[float, typer.Option(help="Level from which intervals are counted.")] = 0.0,
+    base: Annotated[
+        float | None, typer.Option(help="Level from which intervals are counted; by default 0.")
+    ] = None,
     index: Annotated[
         int | None,
         typer.Option(help="Mark every n-th level as an index contour; by default every 5th."),
@@ -122,9 +124,10 @@ def contours(
     wanted = None if levels is None else numbers(levels, "--levels")
     of_lines: dict[str, Any] = {"index": 5 if index is None else index, "min_length": min_length}
     if bands:
-        _refuse_of_lines(
-            smooth=smooth or None, min_length=min_length or None, index=index, labels=labels
-        )
+        own = {"smooth": smooth or None, "min_length": min_length or None, "labels": labels}
+        _refuse("is for lines, not for --bands", index=index, **own)
+    if wanted is not None:
+        _refuse("is for --interval, not for --levels", base=base, index=index)
     if labels is None and label_length is not None:
         raise Failure("--label-length needs --labels", Exit.USAGE)
     if label_length is not None:
@@ -136,7 +139,7 @@ def contours(
             protect_inputs([labels, *(output or [])], source, *options.inputs())
             ready_table(labels, "labels")
     watch = Stopwatch()
-    how: dict[str, Any] = {"interval": interval, "base": base, "min_area": min_area}
+    how: dict[str, Any] = {"interval": interval, "base": base or 0.0, "min_area": min_area}
     how["max_points"] = max_points
     with spinner(options.silent) as say:
         tin = surface_or_tiles(source, options, watch, say)
@@ -361,12 +364,11 @@ def volume(
     )
 
 
-def _refuse_of_lines(**given: object) -> None:
-    """Reject options that have no meaning for polygons; those that are not given are None."""
+def _refuse(why: str, **given: object) -> None:
+    """Reject options that would have no effect; those that are not given are None."""
     for name, value in given.items():
         if value is not None:
-            option = f"--{name.replace('_', '-')}"
-            raise Failure(f"{option} is for lines, not for --bands", Exit.USAGE)
+            raise Failure(f"--{name.replace('_', '-')} {why}", Exit.USAGE)
 
 
 def _check(output: list[Path], source: Path, options: SurfaceOptions, *, bands: bool) -> None:

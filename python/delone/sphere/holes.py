@@ -20,6 +20,7 @@ import numpy as np
 
 from delone import _core
 from delone._base.arrays import as_workers
+from delone._base.duplicates import groups_of
 from delone.errors import CrossingSegmentsError
 from delone.sphere.constrained import ConstrainedDelaunay
 from delone.sphere.coordinates import units_of
@@ -116,10 +117,14 @@ def holes_between_arcs(
     turned = (np.asarray(each.turned) != holes)[ring]
     rows = rings[:-1][ring] + np.where(turned, lengths[ring] - 1 - within, within)
     units = units_of(vectors, workers)
-    places, start = _distinct(units[rows])
+    corners = units[rows]
+    first, start = groups_of(corners)
+    places = corners[first]
     sides = _Sides(start, ring).distinct()
-    piece = np.repeat(np.arange(len(cells) - 1), np.diff(cells))
-    sides, slivers = _joined(sides, places, np.minimum(areas[owner[piece]], each.areas))
+    owner = owner[np.repeat(np.arange(len(cells) - 1), np.diff(cells))]
+    # An outer ring and its holes are one piece; a cell of several outer rings has as many.
+    piece = np.maximum.accumulate(np.where(holes, 0, np.arange(count)))
+    sides, slivers = _joined(sides, places, np.minimum(areas[owner], each.areas))
     lone = np.flatnonzero(sides.twins() < 0)
     if len(lone):
         ends = np.column_stack((sides.start, sides.start[sides.following()]))[lone]
@@ -140,17 +145,6 @@ def holes_between_arcs(
 
     found = _holes(sides, piece, owner, areas, size)
     return found._replace(slivers=found.slivers + slivers)
-
-
-def _distinct(vectors: Floats) -> tuple[Floats, Rows]:
-    """Return the distinct vectors, and the row in them of each."""
-    order = np.lexsort(vectors.T)
-    sorted_vectors = vectors[order]
-    first = np.ones(len(order), dtype=bool)
-    first[1:] = (sorted_vectors[1:] != sorted_vectors[:-1]).any(axis=1)
-    of = np.empty(len(order), dtype=np.int64)
-    of[order] = np.cumsum(first) - 1
-    return sorted_vectors[first], of
 
 
 def _joined(sides: _Sides, places: Floats, areas: Floats) -> tuple[_Sides, int]:
@@ -307,8 +301,8 @@ def _ranks(meridians: Floats) -> tuple[Rows, Floats]:
 
     Coordinates are rounded correctly, so they order the meridians within 45 degrees of an axis.
     """
-    places, of = _distinct(meridians)
-    c, s = places.T
+    first, of = groups_of(meridians)
+    c, s = meridians[first].T
     flat = np.abs(s) <= np.abs(c)
     # East from -180 to 180 degrees, as `arctan2` has them.
     west = np.where(s < 0, 0, 4)

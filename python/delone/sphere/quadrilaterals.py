@@ -8,19 +8,18 @@ contains a direction, and whether that is on a side or at a corner.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from delone import _core
 from delone._base.arrays import as_workers
+from delone._base.duplicates import groups_of
 from delone.errors import InputError
 from delone.sphere.coordinates import directions_of, units_of
 from delone.sphere.exact import turns
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from delone._base.types import Bools, Floats, Rows
     from delone.sphere.grid import Grid
 
@@ -169,7 +168,7 @@ def _corners(source: Grid, used: Bools | None) -> tuple[Rows, Rows, Rows, Rows, 
     lengths = np.diff(rings)
     one = np.diff(cells) == 1
     # Corners with equal bits, except for the sign of 0, are the same.
-    first, number = _distinct(vectors + 0.0)
+    first, number = groups_of(vectors + 0.0)
     ring = np.flatnonzero(one)
     of = cells[:-1][ring]
     lengths = lengths[of]
@@ -187,17 +186,6 @@ def _corners(source: Grid, used: Bools | None) -> tuple[Rows, Rows, Rows, Rows, 
     before, after = np.where(back, after, before), np.where(back, before, after)
     kept = ~_repeated(cell, node, source.ncells, used)[cell]
     return cell[kept], node[kept], before[kept], after[kept], vectors[first]
-
-
-def _distinct(rows: NDArray[Any]) -> tuple[Rows, Rows]:
-    """Return the first of each group of equal rows, and the group number of each row."""
-    order = np.lexsort(rows.T[::-1])
-    lined = rows[order]
-    new = np.ones(len(rows), dtype=bool)
-    new[1:] = (lined[1:] != lined[:-1]).any(axis=1)
-    number = np.empty(len(rows), dtype=np.int64)
-    number[order] = np.cumsum(new) - 1
-    return order[new], number
 
 
 def _shifted(cell: Rows, by: int) -> Rows:
@@ -226,7 +214,7 @@ def _repeated(cell: Rows, node: Rows, count: int, used: Bools | None) -> Bools:
     mine = np.flatnonzero(sizes)
     if used is not None:
         mine = mine[np.argsort(~used[mine], kind="stable")]
-    first, _ = _distinct(table[mine])
+    first, _ = groups_of(table[mine])
     found = np.ones(count, dtype=bool)
     found[mine[first]] = False
     return found

@@ -208,7 +208,9 @@ def _shape(mapping: Any, name: str) -> Any:
     """Return the shapely geometry of a GeoJSON geometry."""
     shape = require("shapely.geometry", extra="geo", what="GeoJSON").shape
     try:
-        return shape(mapping)
+        # NaN is refused later, with its row.
+        with np.errstate(invalid="ignore"):
+            return shape(mapping)
     # What shapely raises depends on the fault; most often it lacks a key.
     except Exception as error:
         raise no_geometry(mapping, name) from error
