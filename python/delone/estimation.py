@@ -148,7 +148,7 @@ def _sampled(points: Floats, order: np.ndarray, size: int) -> Delaunay:
     while True:
         try:
             with warnings.catch_warnings():
-                # Each sample of points that are nearly flat is, too; the triangulation itself says so.
+                # Samples of nearly flat points are nearly flat; the triangulation will warn.
                 warnings.simplefilter("ignore", NearlyFlatWarning)
                 return Delaunay(points[order[:size]], workers=1, planar=True)
         except DegenerateInputError:
