@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from delone import sphere
-from delone.sphere import Grid
+from delone.sphere import Grid, near_sides
 from delone.sphere.holes import _left_of_arcs
 
 if TYPE_CHECKING:
@@ -167,6 +167,18 @@ def test_corners_in_arcs(turn: int) -> None:
     assert len(Grid.from_mesh(lonlat=np.array([*ring, bridge])).validate().rims) == 2
     # From the equator to the meridian of 30 degrees west, whose corners are rounded.
     assert holes([*ring, bridge, beside], slivers=1) == 2
+
+
+def test_sides_beyond_the_first_lot(monkeypatch: pytest.MonkeyPatch) -> None:
+    inner, outer = block(3, -0.25, 0.25), block(6, -0.75, 0.75)
+    outer = outer[np.abs(outer.mean(axis=1)[:, 1:]).max(axis=1) > 0.25]
+    grid = Grid.from_mesh(np.concatenate((outer, inner)) @ turned_by(2))
+    faults = grid.validate()
+    assert (faults.holes, faults.slivers) == (1, 4)
+    monkeypatch.setattr(near_sides, "_LOT", 5)
+    other = grid.validate()
+    assert (other.holes, other.slivers) == (1, 4)
+    assert [rim.tolist() for rim in other.rims] == [rim.tolist() for rim in faults.rims]
 
 
 def test_a_bridge_between_sides() -> None:
