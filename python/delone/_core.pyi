@@ -844,6 +844,9 @@ class ImprovedMesh:
     def labels(self) -> NDArray[np.int32]:
         """The label of each tetrahedron, (m,)."""
     @property
+    def distance(self) -> float:
+        """An upper bound on the distance between the boundary and the original one."""
+    @property
     def counts(self) -> ImprovementCounts:
         """Numbers of changes."""
     @property
@@ -866,6 +869,12 @@ class ImprovementCounts:
     @property
     def moves(self) -> int:
         """Vertices moved."""
+    @property
+    def slides(self) -> int:
+        """Vertices of the boundary or of regions among these."""
+    @property
+    def peeled(self) -> int:
+        """Tetrahedra removed at the boundary."""
     @property
     def weights(self) -> int:
         """Weights assigned."""
@@ -2039,6 +2048,7 @@ def improve3(
     smooth: bool,
     exude: bool,
     turn: bool,
+    tolerance: float,
     passes: int,
     most: int,
     progress: Callable[[int, int], object] | None = None,

@@ -23,6 +23,10 @@ pub struct ImprovementCounts {
     pub faces: usize,
     /// Vertices moved.
     pub moves: usize,
+    /// Vertices of the boundary or of regions among these.
+    pub slides: usize,
+    /// Tetrahedra removed at the boundary.
+    pub peeled: usize,
     /// Weights assigned.
     pub weights: usize,
     /// Vertices added.
@@ -48,6 +52,8 @@ pub struct ImprovedMesh {
     pub weights: Column<f64>,
     /// The label of each tetrahedron, (m,).
     pub labels: Column<i32>,
+    /// An upper bound on the distance between the boundary and the original one.
+    pub distance: f64,
     /// Numbers of changes.
     pub counts: Py<ImprovementCounts>,
     /// Whether the limit on passes was reached while passes still made progress.
@@ -80,6 +86,7 @@ impl Given<'_> {
             smooth: false,
             exude: false,
             turn: false,
+            tolerance: 0.0,
             passes: 0,
             most: 0,
         })
@@ -144,7 +151,7 @@ pub fn smooth3<'py>(
 /// tetrahedra below the bound.
 #[pyfunction]
 #[pyo3(signature = (points, simplices, labels, fixed, removable, min_angle, flips, smooth, exude,
-                    turn, passes, most, progress=None))]
+                    turn, tolerance, passes, most, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "one option each")]
 pub fn improve3<'py>(
     py: Python<'py>,
@@ -158,6 +165,7 @@ pub fn improve3<'py>(
     smooth: bool,
     exude: bool,
     turn: bool,
+    tolerance: f64,
     passes: usize,
     most: usize,
     progress: Option<Passes>,
@@ -174,6 +182,7 @@ pub fn improve3<'py>(
         smooth,
         exude,
         turn,
+        tolerance,
         passes,
         most,
         ..given.task(min_angle)?
@@ -203,6 +212,8 @@ fn arrays_of(py: Python<'_>, made: Improved) -> Outcome<ImprovedMesh> {
         boundary: made.counts.boundary,
         faces: made.counts.faces,
         moves: made.counts.moves,
+        slides: made.counts.slides,
+        peeled: made.counts.peeled,
         weights: made.counts.weights,
         added: made.counts.added,
         removed: made.counts.removed,
@@ -215,6 +226,7 @@ fn arrays_of(py: Python<'_>, made: Improved) -> Outcome<ImprovedMesh> {
         neighbors: table(py, made.neighbors)?,
         weights: column(py, made.weights),
         labels: column(py, made.labels),
+        distance: made.distance,
         counts: Py::new(py, counts)?,
         exhausted: made.exhausted,
     })

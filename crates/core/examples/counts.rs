@@ -375,6 +375,7 @@ fn improved() -> Outcome {
         smooth: true,
         exude: false,
         turn: false,
+        tolerance: 0.0,
         passes: 5,
         most: 4,
     };

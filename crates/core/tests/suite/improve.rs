@@ -64,6 +64,7 @@ fn task<'a>(points: &'a [Point3], simplices: &'a [[i32; 4]]) -> Task<'a> {
         smooth: true,
         exude: false,
         turn: false,
+        tolerance: 0.0,
         passes: 10,
         most: 0,
     }

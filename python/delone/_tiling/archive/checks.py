@@ -179,7 +179,7 @@ def _check_improvement(**arrays: NDArray[Any]) -> None:
     classes = len(bounds) - 1
     require(len(arrays["before"]) == len(arrays["after"]) == classes, "histograms do not match")
     require(len(arrays["below"]) == len(arrays["cause"]), "rows and causes do not match")
-    require(len(angles) == 5 and len(counts) == 10, "the report is incomplete")
+    require(len(angles) == 5 and len(counts) == 12, "the report is incomplete")
     # The goal, then the smallest angle before and after, then the largest before and after.
     require(
         (angles >= 0).all() and (angles <= 180).all(), "angles contains a value outside 0 to 180"
@@ -187,8 +187,11 @@ def _check_improvement(**arrays: NDArray[Any]) -> None:
     require((angles[1:3] <= angles[3:]).all(), "in angles, a smallest one is above the largest")
     require((bounds >= 0).all() and (bounds[1:] > bounds[:-1]).all(), "bounds are out of order")
     check_range("counts", counts, 0, 2**63)
-    require(counts[9] <= 1, "counts does not end with a flag")
-    require(counts[5] <= arrays["added"][0], "an improvement added more points than there are")
+    require(counts[11] <= 1, "counts does not end with a flag")
+    bound = arrays["surface_distance"]
+    require(len(bound) == 1 and np.isfinite(bound).all(), "the report is incomplete")
+    require((bound >= 0).all(), "surface_distance is below 0")
+    require(counts[7] <= arrays["added"][0], "an improvement added more points than there are")
     for name in ("before", "after"):
         check_range(name, arrays[name], 0, 2**63)
     nsimplex = len(arrays["simplices"])

@@ -129,6 +129,7 @@ _TET_MESH = Kind(
         "imprinted": ("<i8", 0),
         "imprint_distance": ("<f8", 0),
         "angles": ("<f8", 0),
+        "surface_distance": ("<f8", 0),
         "counts": ("<i8", 0),
         "bounds": ("<f8", 0),
         "before": ("<i8", 0),

@@ -20,6 +20,7 @@ from delone._base.arrays import (
     require_finite,
 )
 from delone._base.counting import agreed, counted
+from delone._base.numbers import as_nonnegative
 from delone._base.values import as_labels
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.solids.tetmesh import improving, walls
@@ -48,6 +49,7 @@ def improve(
     smooth: bool = True,
     exude: bool = False,
     boundary: str = "faces",
+    tolerance: float = 0.0,
     region: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
     max_points: int = 0,
@@ -75,9 +77,14 @@ def improve(
         tetrahedra around them in the regular triangulation are better.
     boundary : {"faces", "surface"}, optional
         What is preserved of the boundary: its triangles; or only the surface, so that exactly
-        coplanar triangles may be flipped. Boundary vertices never move. With the triangles, all
-        `input_faces` of a TetMesh are preserved, those inside included; with the surface, the
-        result has none.
+        coplanar triangles may be flipped, and vertices inside flat facets and straight edges of
+        the boundary and of regions move in them. With the triangles, all `input_faces` of a
+        TetMesh are preserved, those inside included; with the surface, the result has none.
+    tolerance : float, optional
+        With ``boundary="surface"``, tetrahedra at the boundary that stay below the goal are removed
+        if the boundary remains within this distance of where it was, in the unit of the points.
+        The report has the number of such tetrahedra and a bound on the distance. By default 0:
+        the mesh fills exactly the same space.
     region : array_like of int, shape (m,), optional
         A number for each tetrahedron. Faces between different numbers are preserved like the
         boundary. By default that of a TetMesh.
@@ -99,7 +106,8 @@ def improve(
     -------
     TetMesh
         The improved mesh, immutable: the same rows of input points, some of them moved, followed by
-        added points, which `nadded` counts; and different tetrahedra that fill the same space. Its
+        added points, which `nadded` counts; and different tetrahedra that fill the same space, or
+        with a tolerance nearly the same. Its
         ``report`` contains the angles before and after, the changes by kind, and the remaining
         tetrahedra below the goal, with causes.
 
@@ -132,13 +140,23 @@ def improve(
     Each change raises the worst quality of the tetrahedra that it affects, and does not lower the
     smallest angle among them; bounds on rounding errors prove this, and new tetrahedra are
     positively oriented by the exact predicate. So the smallest dihedral angle of a mesh never
-    becomes smaller, and the iteration terminates, since no state repeats. Boundary vertices never
-    move, including those inside flat sides.
+    becomes smaller, and the iteration terminates, since no state repeats.
+
+    With ``boundary="surface"``, a boundary vertex moves only if all boundary triangles around it
+    are exactly in one plane, or if it is exactly between two neighbors on an edge where planes
+    meet, and only to positions that are exactly in the same planes. Planes and edges that are
+    parallel to axes have such positions everywhere, others only with simple coordinates.
+
+    A tetrahedron with one or two faces on the boundary can be removed within the tolerance. The
+    removals add up: the bound on the distance at a vertex is the sum of the thicknesses of all
+    tetrahedra removed there, so that the whole old boundary is within the tolerance of the new
+    one and the other way round. No point loses its last tetrahedron.
 
     Points on a side that is not parallel to an axis are off its plane by rounding errors. The hull
     is exact, so some of these points lie just behind its facets. A tetrahedron on such a facet with
     a vertex deeper inside would contain them. Every triangulation of these points therefore has
-    tetrahedra this thin. The report gives them the cause ``"rounding"``, and they can be left out.
+    tetrahedra this thin. The report gives them the cause ``"rounding"``. A `tolerance` of a few
+    times the rounding errors removes them.
 
     The result is independent of the order of rows. One thread is used. If the goal is reached, the
     time is about 10 microseconds per tetrahedron, and up to ten times that if points are dense next
@@ -176,7 +194,10 @@ def improve(
         as_flag(exude, name="exude"),
     )
     removable = _removable(mesh, as_choice(contract, CONTRACT, name="contract"), len(points))
-    flips_boundary = as_choice(boundary, BOUNDARIES, name="boundary") == "surface"
+    surface = as_choice(boundary, BOUNDARIES, name="boundary") == "surface"
+    nearby = as_nonnegative(tolerance, name="tolerance", finite=True)
+    if nearby and not surface:
+        raise InputError('tolerance needs boundary="surface"')
     passes = as_limit(max_iter, name="max_iter")
     most = min(as_limit(max_points, name="max_points"), _INDEX_MAX - len(points))
     as_callback(progress, name="progress")
@@ -188,7 +209,8 @@ def improve(
         of_points,
         goal,
         kinds=kinds,
-        limits=(flips_boundary, passes, most),
+        surface=(surface, nearby),
+        limits=(passes, most),
         progress=progress,
     )
     if kept is not None:
@@ -201,7 +223,7 @@ def improve(
         "region": made.labels,
     }
     if isinstance(mesh, TetMesh):
-        # The boundary is the same set, and so is what it leaves empty.
+        # The boundary is the same surface, or nearly, and leaves the same spaces empty.
         arrays["holes"] = mesh.holes
     better = TetMesh._of(arrays, judged, len(made.points) - added)
     better._cache["quality"] = after

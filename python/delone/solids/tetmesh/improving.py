@@ -65,20 +65,21 @@ def improved(
     goal: float,
     *,
     kinds: tuple[bool, bool, bool] = (True, True, False),
-    limits: tuple[bool, int, int] = (False, 30, 0),
+    surface: tuple[bool, float] = (False, 0.0),
+    limits: tuple[int, int] = (30, 0),
     progress: Callable[[int, int], object] | None = None,
 ) -> tuple[Changed, ImproveReport, TetQuality]:
     """Improve ``(points, simplices, labels)``; return the mesh, its report and its measures.
 
-    `kinds` are (flips, smooth, exude), and `limits` whether coplanar faces of the boundary may be
-    flipped, the maximum number of passes, and that of added points.
+    `kinds` are (flips, smooth, exude), `surface` whether only the surface of the boundary is kept,
+    and within which distance, and `limits` the maximum numbers of passes and of added points.
     """
     held, removable, _ = of_points
     return _judged(
         mesh,
         of_points,
         goal,
-        lambda: _core.improve3(*mesh, held, removable, goal, *kinds, *limits, progress),
+        lambda: _core.improve3(*mesh, held, removable, goal, *kinds, *surface, *limits, progress),
     )
 
 

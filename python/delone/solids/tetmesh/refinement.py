@@ -335,7 +335,7 @@ def _improved(state: _State, goal: float, left: int) -> tuple[_State, ImproveRep
     kept = Kept.of(state.simplices, neighbors, state.faces, state.labels)
     free = improving.Points.free(len(state.points))
     made, report, _ = improving.improved(
-        (state.points, state.simplices, kept.labels), free, goal, limits=(False, _PASSES, left)
+        (state.points, state.simplices, kept.labels), free, goal, limits=(_PASSES, left)
     )
     return (
         state._replace(points=made.points, simplices=made.simplices, labels=kept.own[made.labels]),

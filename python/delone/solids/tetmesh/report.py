@@ -31,6 +31,8 @@ COUNTS = (
     "boundary_flips",
     "face_removals",
     "moves",
+    "boundary_moves",
+    "tetrahedra_removed",
     "exudations",
     "points_added",
     "points_removed",
@@ -51,6 +53,7 @@ class Changed(NamedTuple):
     labels: Indices
     weights: Floats
     counts: ImprovementCounts
+    distance: float
     exhausted: bool
     # Which rows of the core remain.
     left: Bools
@@ -63,7 +66,14 @@ class Changed(NamedTuple):
         if made.counts.removed:
             left[added:] = False
             left[simplices] = True
-        rest = made.neighbors, made.labels, weights[left], made.counts, made.exhausted
+        rest = (
+            made.neighbors,
+            made.labels,
+            weights[left],
+            made.counts,
+            made.distance,
+            made.exhausted,
+        )
         number = _number(left)
         return cls(points[left], number[simplices], *rest, left)
 
@@ -90,9 +100,15 @@ class ImproveReport(ReadOnly):
         Bin edges of the histograms of smallest dihedral angles, in degrees.
     before, after : ndarray of int64, shape (k,)
         Number of tetrahedra in each bin, before and after.
-    edge_removals, boundary_flips, face_removals, moves : int
+    edge_removals, boundary_flips, face_removals, moves, boundary_moves : int
         Numbers of removals of interior edges (3-2, 4-4 and so on), of boundary edges (2-2 and so
-        on), of the faces between two vertices (2-3 and so on), and of moves of vertices.
+        on), of the faces between two vertices (2-3 and so on), of moves of vertices, and of those
+        on the boundary among them.
+    tetrahedra_removed : int
+        Number of tetrahedra that were removed at the boundary, within the tolerance.
+    surface_distance : float
+        An upper bound on the distance between the boundary and the original one; 0 if no
+        tetrahedron was removed.
     exudations : int
         Number of vertices that got a weight.
     points_added, points_removed : int
@@ -143,6 +159,9 @@ class ImproveReport(ReadOnly):
     boundary_flips: int
     face_removals: int
     moves: int
+    boundary_moves: int
+    tetrahedra_removed: int
+    surface_distance: float
     exudations: int
     weights: Floats
     points_added: int
@@ -174,6 +193,11 @@ class ImproveReport(ReadOnly):
             lines.append(f"{counted(self.points_added, 'point')} added")
         if self.points_removed:
             lines.append(f"{counted(self.points_removed, 'point')} removed")
+        if self.tetrahedra_removed:
+            lines.append(
+                f"{counted(self.tetrahedra_removed, 'tetrahedron')} removed at the boundary, which "
+                f"remains within {self.surface_distance:.2g}"
+            )
         if self.exudations:
             lines.append(f"{counted(self.exudations, 'weight')} assigned to vertices")
         lines += self._histogram()
@@ -280,6 +304,9 @@ def report(
         boundary_flips=counts.boundary,
         face_removals=counts.faces,
         moves=counts.moves,
+        boundary_moves=counts.slides,
+        tetrahedra_removed=counts.peeled,
+        surface_distance=made.distance,
         exudations=counts.weights,
         weights=made.weights,
         points_added=counts.added,

@@ -21,10 +21,10 @@ __all__ = ["of_report", "recovery_of", "report_of"]
 _ANGLES = ("min_angle", "smallest_before", "smallest_after", "largest_before", "largest_after")
 _HISTOGRAMS = ("bounds", "before", "after", "weights", "below", "wall_edges")
 _NO_COUNTS = np.empty(0, dtype=np.int64)
-_NO_NUMBERS = np.empty(0)
+_NO_ANGLES = np.empty(0)
 # What a file contains for a missing report.
 _UNIMPROVED: dict[str, NDArray[Any]] = {
-    **dict.fromkeys(("angles", "bounds", "weights"), _NO_NUMBERS),
+    **dict.fromkeys(("angles", "surface_distance", "bounds", "weights"), _NO_ANGLES),
     **dict.fromkeys(("counts", "before", "after", "below", "cause"), _NO_COUNTS),
     "wall_edges": np.empty((0, 2), dtype=np.int64),
 }
@@ -34,11 +34,11 @@ _UNRECOVERED: dict[str, NDArray[Any]] = {
     "duplicate_points": np.empty((0, 2), dtype=np.int64),
     "recut": np.empty((0, 3), dtype=np.int64),
     "recut_source": np.empty((0, 2), dtype=np.int64),
-    "imprint_distance": _NO_NUMBERS,
+    "imprint_distance": _NO_ANGLES,
 }
 _UNREFINED: dict[str, NDArray[Any]] = {
     "refinement": _NO_COUNTS,
-    "refinement_bounds": _NO_NUMBERS,
+    "refinement_bounds": _NO_ANGLES,
     "too_large": _NO_COUNTS,
     "above_ratio": _NO_COUNTS,
 }
@@ -98,6 +98,7 @@ def _of_refinement(report: RefinementReport) -> Arrays:
 def _of_improvement(report: ImproveReport) -> Arrays:
     return {
         "angles": np.array([getattr(report, name) for name in _ANGLES]),
+        "surface_distance": np.array([report.surface_distance]),
         "counts": np.array([getattr(report, name) for name in COUNTS], dtype=np.int64),
         "cause": np.array([CAUSES.index(cause) for cause in report.cause], dtype=np.int64),
         **{name: getattr(report, name) for name in _HISTOGRAMS},
@@ -110,7 +111,8 @@ def _improvement_of(arrays: Arrays) -> ImproveReport:
     angles: dict[str, Any] = dict(zip(_ANGLES, arrays["angles"].tolist(), strict=True))
     histograms: dict[str, Any] = {name: arrays[name] for name in _HISTOGRAMS}
     cause = np.array(CAUSES)[arrays["cause"]]
-    return ImproveReport(**angles, **counts, **histograms, cause=cause)
+    distance = float(arrays["surface_distance"][0])
+    return ImproveReport(**angles, **counts, **histograms, cause=cause, surface_distance=distance)
 
 
 def _of_recovery(report: RecoveryReport) -> Arrays:

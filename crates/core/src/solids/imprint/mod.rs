@@ -14,7 +14,7 @@
 
 mod cut;
 mod events;
-mod near;
+pub(crate) mod near;
 #[cfg(test)]
 mod tests;
 mod work;

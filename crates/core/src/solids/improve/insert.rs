@@ -116,7 +116,7 @@ impl Search {
             // The vertex moves to where the worst of the new tetrahedra is best.
             self.open(store)?;
             let mut worst = self.star.worst(place, 0.0);
-            if let Some((there, better)) = self.star.ascend(place, STEPS) {
+            if let Some((there, better)) = self.star.ascend(place, STEPS, None) {
                 (place, worst) = (there, better);
             }
             idle += 1;

@@ -95,6 +95,13 @@ fn precise([a, b, c, d]: [Point3; 4]) -> f64 {
     (b[0] * minor(1, 2) + b[1] * minor(2, 0) + b[2] * minor(0, 1)).hi
 }
 
+/// A bound of the rounding error of distances between the corners and faces of a tetrahedron.
+pub fn rounding(shape: &Shape) -> f64 {
+    let squared = shape.edges.iter().fold(0.0_f64, |m, &e| m.max(e));
+    let smallest = shape.faces.iter().fold(f64::INFINITY, |m, &n| m.min(n));
+    SLACK * (1.0 + squared / smallest.sqrt()) * squared.sqrt()
+}
+
 impl Shape {
     /// Squares of the smallest weighted sine of all angles, and of the smallest sine of acute
     /// angles.

@@ -10,7 +10,8 @@
 //! # Invariants
 //!
 //! Tetrahedra are positively oriented, exactly. Walls do not change, except that two coplanar ones
-//! may be flipped if the task permits it. A change is made only if the
+//! may be flipped, and vertices slide in exactly flat facets and straight edges (see `slide`), if the task
+//! permits it. With a tolerance, tetrahedra at the boundary are removed (see `peel`). Any other change is made only if the
 //! bounds of `measure` prove, rounding included, that the worst quality of the new tetrahedra is
 //! above that of the old ones, and that their smallest dihedral angle is not smaller. So the
 //! smallest angle of the mesh never decreases. Since old and new tetrahedra fill the same region
@@ -19,7 +20,7 @@
 //! # Why it terminates
 //!
 //! Each change makes the ascending list of all qualities lexicographically larger, where the end of
-//! a list counts as infinite, so no mesh repeats. The number of added vertices is limited, so there
+//! a list counts as infinite, also that of a tetrahedron that is only removed, so no mesh repeats. The number of added vertices is limited, so there
 //! are finitely many meshes on doubles. The number of passes is also limited, and a pass that
 //! changes nothing is the last one.
 //!
@@ -35,7 +36,9 @@ mod face;
 mod insert;
 mod measure;
 mod order;
+mod peel;
 mod relax;
+mod slide;
 mod smooth;
 mod store;
 mod task;
@@ -86,7 +89,11 @@ fn changed<'a>(
         }
     }
     let imported = import(task)?;
-    let mut work = work::Work::new(imported.store, task, &imported.rows)?;
+    let scaled = Task {
+        tolerance: task.tolerance * imported.scale,
+        ..task
+    };
+    let mut work = work::Work::new(imported.store, scaled, &imported.rows)?;
     let exhausted = !change(&mut work)?;
     order::export(work, task, imported.rows, imported.scale, exhausted)
 }

@@ -95,12 +95,13 @@ pub fn import(task: Task) -> Result<Imported> {
     for (fixed, &row) in store.fixed.iter_mut().zip(&rows) {
         *fixed |= task.fixed.get(row as usize).copied().unwrap_or(false);
     }
-    whole_stars(&store, &rows)?;
+    whole_stars(&mut store, task, &rows)?;
     Ok(Imported { store, rows, scale })
 }
 
-/// Rejects a movable vertex that has tetrahedra outside its connected star: they overlap.
-fn whole_stars(store: &Store, rows: &[u32]) -> Result<()> {
+/// Rejects a movable vertex that has tetrahedra outside its connected star: they overlap. On walls, such a
+/// vertex does not slide.
+fn whole_stars(store: &mut Store, task: Task, rows: &[u32]) -> Result<()> {
     let mut degree = filled(store.points.len(), 0_u32)?;
     for v in store.corners.as_flattened() {
         degree[*v as usize] += 1;
@@ -112,6 +113,15 @@ fn whole_stars(store: &Store, rows: &[u32]) -> Result<()> {
             return Err(Error::Shape(format!(
                 "the tetrahedra around row {row} do not form one ball: some overlap"
             )));
+        }
+    }
+    if task.turn && task.smooth {
+        for v in (0..store.points.len() as u32).filter(|&v| store.rim[v as usize]) {
+            let row = rows[v as usize] as usize;
+            if !task.fixed.get(row).copied().unwrap_or(false) {
+                store.whole_star(v, &mut star)?;
+                store.slides[v as usize] = star.len() as u32 == degree[v as usize];
+            }
         }
     }
     Ok(())
@@ -161,6 +171,7 @@ pub fn export(
         simplices: with_room(order.len())?,
         neighbors: with_room(order.len())?,
         labels: with_room(order.len())?,
+        distance: work.depth.iter().fold(0.0_f64, |m, &d| m.max(d)) / scale,
         weights,
         counts: work.counts,
         exhausted,

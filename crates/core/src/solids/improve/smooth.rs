@@ -12,6 +12,7 @@ use std::cmp::Ordering;
 use delone_predicates::Point3;
 
 use super::measure::{OBTUSE, Vector, cross, dot, minus, plus};
+use super::slide::Slide;
 
 /// The most steps of one ascent; more are rarely needed, and the vertex is tried again in the next
 /// pass.
@@ -182,13 +183,19 @@ impl Star {
         worst
     }
 
-    /// Ascends from `x`; if that gains, returns the new position and its worst quality.
-    pub fn climb(&mut self, x: Point3) -> Option<(Point3, f64)> {
-        self.ascend(x, STEPS)
+    /// Ascends from `x`, along a facet or an edge if given; if that gains, returns the new position and its
+    /// worst quality.
+    pub fn climb(&mut self, x: Point3, slide: Option<&Slide>) -> Option<(Point3, f64)> {
+        self.ascend(x, STEPS, slide)
     }
 
     /// As `climb`, with another limit on the number of steps.
-    pub fn ascend(&mut self, mut x: Point3, steps: usize) -> Option<(Point3, f64)> {
+    pub fn ascend(
+        &mut self,
+        mut x: Point3,
+        steps: usize,
+        slide: Option<&Slide>,
+    ) -> Option<(Point3, f64)> {
         let mut value = self.worst(x, 0.0);
         let start = value;
         // So flat that its gradients are noise: left to edge and face removal.
@@ -196,7 +203,7 @@ impl Star {
             return None;
         }
         for _ in 0..steps {
-            let Some((next, better)) = self.step(x, value) else {
+            let Some((next, better)) = self.step(x, value, slide) else {
                 break;
             };
             let gained = better > value * (1.0 + GAIN);
@@ -209,7 +216,7 @@ impl Star {
     }
 
     /// One step with a gain.
-    fn step(&mut self, x: Point3, value: f64) -> Option<(Point3, f64)> {
+    fn step(&mut self, x: Point3, value: f64, slide: Option<&Slide>) -> Option<(Point3, f64)> {
         self.slopes.clear();
         for cone in &self.cones {
             cone.slopes(x, FAR * value, &mut self.slopes);
@@ -221,7 +228,8 @@ impl Star {
         let limit = least * (1.0 + ACTIVE);
         let active = self.slopes.iter().filter(|s| s.value <= limit);
         self.active.clear();
-        self.active.extend(active.map(|s| s.gradient));
+        let along = |v: Vector| slide.map_or(v, |slide| slide.along(v));
+        self.active.extend(active.map(|s| along(s.gradient)));
         let direction = shortest(&self.active)?;
         let squared = dot(direction, direction);
         // Far enough to double the worst, unless another becomes the worst before.
@@ -418,7 +426,7 @@ mod tests {
                 star.push(if positive { [p, q, r] } else { [p, r, q] });
             }
         }
-        let (place, worst) = star.climb([0.4, 0.2, -0.1]).unwrap();
+        let (place, worst) = star.climb([0.4, 0.2, -0.1], None).unwrap();
         assert!(dot(place, place) < 0.02, "{place:?}");
         assert!(worst > 0.75);
     }

@@ -34,8 +34,12 @@ pub struct Store {
     pub quality: Vec<f64>,
     /// A tetrahedron of each vertex.
     pub at: Vec<u32>,
-    /// Vertices that do not move.
+    /// Vertices that do not move, those of walls included, unless they slide.
     pub fixed: Vec<bool>,
+    /// Vertices of walls.
+    pub rim: Vec<bool>,
+    /// Vertices of walls that move if they are inside flat facets or straight edges.
+    pub slides: Vec<bool>,
     free: Vec<u32>,
     faces: Vec<Side>,
 }
@@ -92,7 +96,11 @@ impl Store {
             rest = &others[same..];
         }
         let quality = filled(m, 0.0)?;
+        let mut rim = with_room(n)?;
+        rim.extend_from_slice(&fixed);
         Ok(Self {
+            slides: filled(n, false)?,
+            rim,
             points,
             corners,
             across,
@@ -141,9 +149,52 @@ impl Store {
         (u != NONE && self.label[u as usize] == self.label[t as usize]).then_some(u)
     }
 
+    /// Whether the edge of two corners of a tetrahedron is on no wall: the tetrahedra around it close.
+    pub fn is_inside(&self, start: u32, [i, j]: [usize; 2]) -> bool {
+        let [a, b] = [i, j].map(|k| self.corners[start as usize][k]);
+        let others = (0..4).filter(|k| ![i, j].contains(k));
+        let mut others = others.map(|k| self.corners[start as usize][k]);
+        let (Some(mut behind), Some(mut ahead)) = (others.next(), others.next()) else {
+            return false;
+        };
+        let mut t = start;
+        // Across the face opposite the vertex behind, on and on: each vertex of the ring once.
+        loop {
+            let next = self.corner(t, behind).and_then(|k| self.beyond(t, k));
+            match next {
+                Some(u) if u == start => return true,
+                Some(u) => {
+                    let all = self.corners[u as usize].into_iter();
+                    let apex = all.fold(0, |sum, v| sum ^ v) ^ a ^ b ^ ahead;
+                    (t, behind, ahead) = (u, ahead, apex);
+                }
+                None => return false,
+            }
+        }
+    }
+
     /// Collects the tetrahedra of a vertex that are connected to `at[v]` by faces that are not
     /// walls.
     pub fn star(&self, v: u32, found: &mut Vec<u32>) -> Result<()> {
+        self.gather(v, found, |t, k| self.beyond(t, k))
+    }
+
+    /// Collects the tetrahedra of a vertex that are connected to `at[v]` by faces, walls included.
+    pub fn whole_star(&self, v: u32, found: &mut Vec<u32>) -> Result<()> {
+        self.gather(v, found, |t, k| {
+            let u = self.across[t as usize][k];
+            (u != NONE).then_some(u)
+        })
+    }
+
+    /// Collects the tetrahedra of a vertex that `across` reaches from `at[v]`, given a tetrahedron and
+    /// the corner opposite the face to cross.
+    fn gather(
+        &self,
+        v: u32,
+        found: &mut Vec<u32>,
+        across: impl Fn(u32, usize) -> Option<u32>,
+    ) -> Result<()> {
         found.clear();
         push(found, self.at[v as usize])?;
         let mut next = 0;
@@ -153,7 +204,7 @@ impl Store {
                 if self.corners[t as usize][k] == v {
                     continue;
                 }
-                if let Some(u) = self.beyond(t, k)
+                if let Some(u) = across(t, k)
                     && !found.contains(&u)
                 {
                     push(found, u)?;
@@ -217,6 +268,50 @@ impl Store {
         let joined = self.join(&faces, turning);
         self.faces = faces;
         joined
+    }
+
+    /// Adds a vertex that is not on a wall and has no tetrahedron yet.
+    pub fn add(&mut self, place: Point3) -> Result<()> {
+        push(&mut self.points, place)?;
+        push(&mut self.at, NONE)?;
+        for marks in [&mut self.fixed, &mut self.rim, &mut self.slides] {
+            push(marks, false)?;
+        }
+        Ok(())
+    }
+
+    /// Removes the last vertex, which has no tetrahedron.
+    pub fn take_back(&mut self) {
+        self.points.pop();
+        self.at.pop();
+        for marks in [&mut self.fixed, &mut self.rim, &mut self.slides] {
+            marks.pop();
+        }
+    }
+
+    /// Removes a tetrahedron at the boundary, whose corners have others; all of its corners are on the
+    /// boundary then.
+    pub fn remove(&mut self, t: u32) -> Result<()> {
+        let corners = self.corners[t as usize];
+        for k in 0..4 {
+            let u = self.across[t as usize][k];
+            if u == NONE {
+                continue;
+            }
+            for back in &mut self.across[u as usize] {
+                if *back == t {
+                    *back = NONE;
+                }
+            }
+            for v in (0..4).filter(|&i| i != k).map(|i| corners[i]) {
+                self.at[v as usize] = u;
+            }
+        }
+        for v in corners {
+            (self.fixed[v as usize], self.rim[v as usize]) = (true, true);
+        }
+        self.corners[t as usize] = [NONE; 4];
+        push(&mut self.free, t)
     }
 
     /// A slot for a tetrahedron: the one offered, an empty one or a new one.

@@ -26,8 +26,12 @@ pub struct Task<'a> {
     pub smooth: bool,
     /// Whether interior vertices are given weights first.
     pub exude: bool,
-    /// Whether coplanar faces of the boundary may be flipped.
+    /// Whether only the surface of walls is kept: coplanar faces of the boundary may be flipped, and
+    /// vertices inside flat facets and straight edges move in them.
     pub turn: bool,
+    /// The distance from its original place within which the boundary must remain if tetrahedra
+    /// there are removed; none are if this is 0.
+    pub tolerance: f64,
     /// The limit on passes.
     pub passes: usize,
     /// The limit on new vertices.
@@ -45,6 +49,10 @@ pub struct Counts {
     pub faces: usize,
     /// Moves of vertices.
     pub moves: usize,
+    /// Moves of vertices on walls among them.
+    pub slides: usize,
+    /// Tetrahedra removed at the boundary.
+    pub peeled: usize,
     /// Weights assigned.
     pub weights: usize,
     /// Vertices added.
@@ -70,6 +78,8 @@ pub struct Improved {
     pub neighbors: Vec<[i32; 4]>,
     /// The label of each.
     pub labels: Vec<i32>,
+    /// An upper bound on the distance between the boundary and the original one.
+    pub distance: f64,
     /// The weight of each row, zero for most.
     pub weights: Vec<f64>,
     /// Counts of the changes.

@@ -6,6 +6,7 @@ use delone_predicates::Point3;
 use super::edge::{self, Plan, Ring};
 use super::insert::{Insertion, Search};
 use super::measure::{Bounds, are_positive, bounds, quality};
+use super::slide::Slide;
 use super::smooth::Star;
 use super::store::{FACES, NONE, Store};
 use super::task::{Counts, Task, Tell};
@@ -47,7 +48,9 @@ pub struct Work<'a> {
     pub counts: Counts,
     /// The weight of each vertex.
     pub weights: Vec<f64>,
-    task: Task<'a>,
+    /// For each vertex, how far boundary faces at it may be from the original boundary (see `peel`).
+    pub depth: Vec<f64>,
+    pub(super) task: Task<'a>,
     /// Whether each vertex may be removed, and whether any may.
     removable: Vec<bool>,
     removes: bool,
@@ -63,9 +66,9 @@ pub struct Work<'a> {
     pub(super) around: Vec<u32>,
     /// The number of the latest attempt: what has not changed since its last attempt is not tried
     /// again.
-    clock: u64,
+    pub(super) clock: u64,
     /// For each vertex, when a tetrahedron at it last changed, and when a move was last tried.
-    touched: Vec<u64>,
+    pub(super) touched: Vec<u64>,
     moved: Vec<u64>,
     /// For each vertex, when its removal was last tried.
     contracted: Vec<u64>,
@@ -94,6 +97,7 @@ impl<'a> Work<'a> {
             contracted: filled(n, 0)?,
             clock: 1,
             weights: filled(n, 0.0)?,
+            depth: filled(if task.tolerance > 0.0 { n } else { 0 }, 0.0)?,
             touched: filled(n, 1)?,
             moved: filled(n, 0)?,
             tried: filled(m, 0)?,
@@ -120,10 +124,21 @@ impl<'a> Work<'a> {
         // The number of vertices does not change at first, as long as that improves the mesh. Then
         // vertices are removed and added at the worst tetrahedra, and finally at less bad ones.
         let mut ended = self.run_passes(None, watch, tell)?;
+        ended = self.peel_passes(ended, watch, tell)?;
         for level in LEVELS {
             if ended && (self.removes || self.counts.added < self.task.most) {
                 ended = self.run_passes(Some(level * self.bound), watch, tell)?;
+                ended = self.peel_passes(ended, watch, tell)?;
             }
+        }
+        Ok(ended)
+    }
+
+    /// Removes tetrahedra at the boundary, within the tolerance, and runs passes, until none is left to
+    /// remove. Each round has fewer tetrahedra, or reaches the limit on passes.
+    fn peel_passes(&mut self, mut ended: bool, watch: &Watch, tell: Tell) -> Result<bool> {
+        while ended && self.task.tolerance > 0.0 && self.peel_all(watch)? > 0 {
+            ended = self.run_passes(None, watch, tell)?;
         }
         Ok(ended)
     }
@@ -169,7 +184,7 @@ impl<'a> Work<'a> {
     }
 
     /// Whether a tetrahedron has a quality below a level.
-    fn is_below(&self, t: u32, level: f64) -> bool {
+    pub(super) fn is_below(&self, t: u32, level: f64) -> bool {
         self.store.is_there(t) && self.store.quality[t as usize] < level
     }
 
@@ -193,7 +208,7 @@ impl<'a> Work<'a> {
     }
 
     /// The tetrahedra below a level, worst first.
-    fn below(&self, level: f64) -> Result<Vec<u32>> {
+    pub(super) fn below(&self, level: f64) -> Result<Vec<u32>> {
         let store = &self.store;
         let all = (0..store.places()).filter(|&t| self.is_below(t, level));
         let mut found: Vec<u32> = with_room(all.clone().count())?;
@@ -289,6 +304,10 @@ impl<'a> Work<'a> {
         let now = bounds(old.map(|v| store.places_of(v)));
         if !good(bounds(new()), now) || !are_positive(new()) {
             return Ok(false);
+        }
+        if plan.turning && !self.depth.is_empty() {
+            // A corner that old and new walls do not share may be the one with the depth.
+            deepen(&mut self.depth, plan.new.as_flattened());
         }
         store.replace(&plan.old, &plan.new, plan.turning, &mut self.made)?;
         self.tried.resize(store.corners.len(), 0);
@@ -429,9 +448,7 @@ impl<'a> Work<'a> {
 
     /// Adds a vertex if the new tetrahedra are certainly better.
     fn insert_one(&mut self, insertion: &Insertion) -> Result<()> {
-        push(&mut self.store.points, insertion.place)?;
-        push(&mut self.store.fixed, false)?;
-        push(&mut self.store.at, NONE)?;
+        self.store.add(insertion.place)?;
         push(&mut self.weights, 0.0)?;
         push(&mut self.touched, self.clock)?;
         push(&mut self.moved, 0)?;
@@ -442,9 +459,7 @@ impl<'a> Work<'a> {
             return Ok(());
         }
         self.counts.refused += 1;
-        self.store.points.pop();
-        self.store.fixed.pop();
-        self.store.at.pop();
+        self.store.take_back();
         self.weights.pop();
         self.touched.pop();
         self.moved.pop();
@@ -453,13 +468,14 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// Moves each free vertex of a tetrahedron below the bound.
+    /// Moves each free vertex of a tetrahedron below the bound, and those that slide.
     fn move_all(&mut self, watch: &Watch) -> Result<()> {
         let mut met = filled(self.store.points.len(), false)?;
         let mut steps = 0;
         for t in self.below(self.bound)? {
             for v in self.store.corners[t as usize] {
-                if met[v as usize] || self.store.fixed[v as usize] {
+                let stays = self.store.fixed[v as usize] && !self.store.slides[v as usize];
+                if met[v as usize] || stays {
                     continue;
                 }
                 met[v as usize] = true;
@@ -481,7 +497,17 @@ impl<'a> Work<'a> {
     /// Moves a vertex if the tetrahedra around it are certainly better afterward.
     fn move_one(&mut self, v: u32) -> Result<bool> {
         let store = &mut self.store;
-        store.star(v, &mut self.around)?;
+        let slide = if store.fixed[v as usize] {
+            // On both sides of the walls.
+            store.whole_star(v, &mut self.around)?;
+            let Some(slide) = Slide::of(store, v, &self.around) else {
+                return Ok(false);
+            };
+            Some(slide)
+        } else {
+            store.star(v, &mut self.around)?;
+            None
+        };
         self.star.clear();
         for &t in &self.around {
             let corners = store.corners[t as usize];
@@ -490,11 +516,23 @@ impl<'a> Work<'a> {
             self.star.push(face);
         }
         let here = store.points[v as usize];
-        let Some((there, _)) = self.star.climb(here) else {
+        let Some((there, _)) = self.star.climb(here, slide.as_ref()) else {
             return Ok(false);
         };
-        let moved = self.try_move(v, there, Bounds::surely_better);
+        let there = match &slide {
+            Some(slide) => slide.nearest(there),
+            None => Some(there),
+        };
+        let moved = there.is_some_and(|there| self.try_move(v, there, Bounds::surely_better));
         self.counts.refused += usize::from(!moved);
+        if moved && slide.is_some() {
+            self.counts.slides += 1;
+            if !self.depth.is_empty() {
+                let corners = self.around.iter().map(|&t| self.store.corners[t as usize]);
+                let all: Vec<u32> = corners.flatten().collect();
+                deepen(&mut self.depth, &all);
+            }
+        }
         Ok(moved)
     }
 
@@ -523,6 +561,19 @@ impl<'a> Work<'a> {
             }
         }
         true
+    }
+}
+
+/// Gives vertices the largest depth among them.
+pub(super) fn deepen(depth: &mut [f64], vertices: &[u32]) {
+    let of = vertices.iter().filter_map(|&v| depth.get(v as usize));
+    let most = of.fold(0.0_f64, |m, &d| m.max(d));
+    if most > 0.0 {
+        for &v in vertices {
+            if let Some(d) = depth.get_mut(v as usize) {
+                *d = most;
+            }
+        }
     }
 }
 

@@ -89,6 +89,7 @@ pub fn import(given: &Given) -> Result<(Mesh, Order)> {
         smooth: false,
         exude: false,
         turn: false,
+        tolerance: 0.0,
         passes: 0,
         most: 0,
     })?;
