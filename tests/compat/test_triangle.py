@@ -182,3 +182,22 @@ class TestRefinedAgain:
         flat = {"vertices": points, "triangles": [(0, 1, 2), (0, 2, 3), (4, 5, 0)]}
         with pytest.raises(InputError, match=r"without an area cannot be refined: 2;"):
             triangulate(flat, "r")
+
+
+def test_segments_through_vertices_of_given_triangles() -> None:
+    """A diagonal passes through the center, which is a corner of all given triangles."""
+    square = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 1)]
+    given = {
+        "vertices": square,
+        "triangles": [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)],
+        "segments": [(0, 2), (3, 1)],
+        "segment_markers": [5, 7],
+    }
+    made = triangulate(given, "rpqa0.1")
+    ends = np.asarray(made["vertices"])[made["segments"]]
+    marker = np.ravel(made["segment_markers"])
+    rising = (ends[:, :, 0] == ends[:, :, 1]).all(axis=1)
+    falling = (ends.sum(axis=2) == 2).all(axis=1)
+    assert rising.sum() > 2 and falling.sum() > 2
+    assert set(marker[rising]) == {5} and set(marker[falling]) == {7}
+    assert not set(marker[~rising & ~falling]) & {5, 7}

@@ -196,8 +196,8 @@ def _domain(tri: Mapping[str, Any], base: Given, given: Indices, switches: Switc
         neighbors=made.neighbors,
         labels=_parts_in(made, base),
         regions=np.arange(int(base.part.max()) + 1, dtype=np.int32),
-        sides=domains.sides_at(made.simplices, made.constrained, (ends, np.arange(len(ends)))),
         lines=lines,
+        walls=domains.Pieces.of(made),
     )
 
 

@@ -9,7 +9,7 @@ triangles to the left of a subsegment keep their region.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 
@@ -32,12 +32,13 @@ __all__ = [
     "Counts",
     "Domain",
     "Lines",
+    "Pieces",
     "extended",
     "labels_beside",
     "needles_in",
     "of_constrained",
     "refined",
-    "sides_at",
+    "sides_in",
     "sides_of",
     "started",
     "triangulated",
@@ -66,6 +67,20 @@ class Lines(NamedTuple):
     geometries: Indices
 
 
+class Pieces(NamedTuple):
+    """The subsegments of a domain, each once, in any order."""
+
+    # (q, 2): vertices.
+    segments: Indices
+    # (q,): the line that each is part of.
+    line: Indices
+
+    @classmethod
+    def of(cls, made: _core.ConstrainedTriangulation) -> Self:
+        """Return the subsegments of a triangulation of lines; of lines that overlap, the first."""
+        return cls(made.segments, made.source[made.source_start[:-1]])
+
+
 class Domain(NamedTuple):
     """Triangles of a convex hull, some of which are the domain."""
 
@@ -80,9 +95,10 @@ class Domain(NamedTuple):
     # (m,): rows of `regions`; -1 outside.
     labels: Indices
     regions: Indices
-    # (m, 3): the line under the edge opposite each vertex, or -1.
-    sides: Indices
     lines: Lines
+    # The subsegments; or, as the core returns them, (m, 3): the line under the edge opposite each
+    # vertex, or -1.
+    walls: Pieces | Indices
 
 
 class Counts(NamedTuple):
@@ -158,8 +174,8 @@ def of_constrained(
         neighbors=made.neighbors,
         labels=labels,
         regions=regions.astype(np.int32),
-        sides=sides_at(simplices, made.constrained | bare, (ends, np.arange(len(ends)))),
         lines=lines,
+        walls=Pieces(ends, np.arange(len(ends), dtype=np.int32)),
     )
 
 
@@ -200,7 +216,7 @@ def started(
     `samples` are positions and the largest areas there, `kinds` are (circles, sizes_yield).
     """
     lines = domain.lines
-    segments, line = sides_of(domain.simplices, domain.neighbors, domain.sides)
+    segments, line = _pieces(domain)
     return _core.Refinement2(
         (domain.points, domain.simplices, domain.neighbors, domain.labels, segments, lines.frozen),
         (line, lines.ends, domain.on),
@@ -223,7 +239,7 @@ def extended(domain: Domain, made: _core.RefinedMesh) -> tuple[Domain, Counts]:
         simplices=made.simplices,
         neighbors=made.neighbors,
         labels=made.labels,
-        sides=made.sides,
+        walls=made.sides,
     )
     counts = Counts(made.for_segments, made.for_angles, made.for_sizes, made.exhausted)
     return new, counts
@@ -246,7 +262,7 @@ def _made(
 ) -> _core.RefinedMesh:
     """Call the core; `bounds` are (min_angle, max_points), `kinds` (circles, sizes_yield)."""
     lines = domain.lines
-    segments, line = sides_of(domain.simplices, domain.neighbors, domain.sides)
+    segments, line = _pieces(domain)
     return _core.refine2(
         domain.points,
         domain.simplices,
@@ -276,11 +292,19 @@ def unit_of(points: Floats) -> float:
     return unit if np.array_equal(points / unit * unit, points) else 1.0
 
 
-def sides_of(simplices: Indices, neighbors: Indices, sides: Indices) -> tuple[Indices, Indices]:
-    """Return the subsegments under edges of triangles, each once, (q, 2), and their lines, (q,)."""
+def _pieces(domain: Domain) -> Pieces:
+    """Return the subsegments of a domain."""
+    walls = domain.walls
+    if isinstance(walls, Pieces):
+        return walls
+    return sides_of(domain.simplices, domain.neighbors, walls)
+
+
+def sides_of(simplices: Indices, neighbors: Indices, sides: Indices) -> Pieces:
+    """Return the subsegments under edges of triangles."""
     once = (sides >= 0) & (neighbors < np.arange(len(simplices), dtype=np.int32)[:, None])
     t, k = np.nonzero(once)
-    return np.column_stack(topology.half_edges(simplices, t, k)), sides[t, k]
+    return Pieces(np.column_stack(topology.half_edges(simplices, t, k)), sides[t, k])
 
 
 def triangulated(
@@ -318,22 +342,11 @@ def labels_beside(
     return of_component[component]
 
 
-def sides_at(
-    simplices: Indices, constrained: Bools, segments: tuple[Indices, NDArray[np.integer]]
-) -> Indices:
-    """Return the line under the edge opposite each vertex, (m, 3), or -1.
-
-    `segments` are the subsegments, (q, 2), and their lines, (q,); `constrained` says which edges
-    are subsegments.
-    """
-    ends, line = segments
-    sides = np.full(simplices.shape, -1, dtype=np.int32)
-    if not len(ends):
-        return sides
-    t, k = np.nonzero(constrained)
-    edges = np.column_stack(topology.half_edges(simplices, t, k))
-    npoints = max(int(simplices.max()), int(ends.max())) + 1
-    sides[t, k] = line[
-        _core.facet_rows(np.ascontiguousarray(ends, np.int32), edges, npoints, False)
-    ]
-    return sides
+def sides_in(domain: Domain) -> Indices:
+    """Return the line under the edge opposite each vertex of a domain, (m, 3), or -1."""
+    walls, simplices = domain.walls, domain.simplices
+    if not isinstance(walls, Pieces):
+        return walls
+    edges = np.stack((simplices[:, [1, 2, 0]], simplices[:, [2, 0, 1]]), axis=2).reshape(-1, 2)
+    rows = _core.facet_rows(walls.segments, edges, len(domain.points), False)
+    return np.append(walls.line, np.int32(-1))[rows].reshape(-1, 3)

@@ -257,9 +257,8 @@ def _fixed(fixed: bool | str | ArrayLike, count: int) -> Bools:
 
 def _on_boundary(domain: Domain) -> Bools:
     """Return which lines have the domain on one side only."""
-    t, k = np.nonzero((domain.sides >= 0) & (domain.labels[:, None] >= 0))
-    sides = np.bincount(domain.sides[t, k], minlength=len(domain.lines.ends))
-    found: Bools = sides == 1
+    sides = domains.sides_in(domain)[domain.labels >= 0]
+    found: Bools = np.bincount(sides[sides >= 0], minlength=len(domain.lines.ends)) == 1
     return found
 
 

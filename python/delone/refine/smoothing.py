@@ -84,7 +84,6 @@ def rebuilt(
     lost = _astray(mesh, made.simplices, labels, row, kept)
     if len(lost):
         return None, lost
-    sides = domains.sides_at(made.simplices, made.constrained, (segments, mesh._segment_line))
     lines = mesh._lines._replace(ends=row[mesh._ends])
     return domains.Domain(
         points=points,
@@ -95,8 +94,8 @@ def rebuilt(
         neighbors=made.neighbors,
         labels=labels,
         regions=mesh._regions,
-        sides=sides,
         lines=lines,
+        walls=domains.Pieces(segments, mesh._segment_line),
     ), lost
 
 

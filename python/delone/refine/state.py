@@ -15,7 +15,7 @@ from delone._base.immutable import kept, sealed
 from delone._tiling.plane import topology
 from delone._tiling.triangulation import HullTiling
 from delone.refine import domains
-from delone.refine.domains import Counts, Domain, Lines
+from delone.refine.domains import Counts, Domain, Lines, Pieces
 from delone.refine.report import reported
 
 if TYPE_CHECKING:
@@ -81,13 +81,14 @@ class MeshState(HullTiling):
         used = np.zeros(len(domain.points), dtype=bool)
         used[domain.simplices[inside]] = True
         row = (np.cumsum(used) - 1).astype(np.int32)
-        lines, line = _only_used(domain.lines, domain.sides[inside], row)
+        sides = domains.sides_in(domain)[inside]
+        lines, line = _only_used(domain.lines, sides, row)
         arrays: dict[str, NDArray[Any]] = {
             "points": domain.points[used],
             "simplices": row[domain.simplices[inside]],
             "neighbors": number[domain.neighbors[inside]],
             "region": domain.regions[domain.labels[inside]],
-            "sides": line[domain.sides[inside]],
+            "sides": line[sides],
             "on": line[domain.on[used]],
             "point_source": domain.point_source[used],
             "point_markers": domain.point_markers[used],
@@ -125,16 +126,13 @@ class MeshState(HullTiling):
 
     @property
     @kept
-    def _whole(self) -> tuple[Indices, Indices, Indices, Indices]:
-        """Triangles of the whole hull: vertices, neighbors, rows of regions, lines."""
+    def _whole(self) -> tuple[Indices, Indices, Indices]:
+        """Triangles of the whole hull: vertices, neighbors, rows of regions."""
         edges, label = self._directed
         made, labels = domains.triangulated(
             self._points, self.segments, edges, label, self._workers
         )
-        sides = domains.sides_at(
-            made.simplices, made.constrained, (self.segments, self._segment_line)
-        )
-        return made.simplices, made.neighbors, labels, sides
+        return made.simplices, made.neighbors, labels
 
     @property
     def _directed(self) -> tuple[Indices, Indices]:
@@ -150,7 +148,7 @@ class MeshState(HullTiling):
 
     def _domain(self) -> Domain:
         """Return the mesh as a domain, the input of the core."""
-        simplices, neighbors, labels, sides = self._whole
+        simplices, neighbors, labels = self._whole
         return Domain(
             points=self._points,
             point_source=self._point_source,
@@ -160,8 +158,8 @@ class MeshState(HullTiling):
             neighbors=neighbors,
             labels=labels,
             regions=self._regions,
-            sides=sides,
             lines=self._lines,
+            walls=Pieces(*self._ordered),
         )
 
     @property
