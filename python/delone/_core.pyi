@@ -77,15 +77,16 @@ __all__ = [
     "alpha_torus2",
     "alpha_vertices",
     "antipodes",
+    "areas2",
     "around",
     "below2",
     "check_surface3",
     "circumcenters",
+    "closed_polygons",
     "coarsen3",
     "combine2",
     "components2",
     "components_beside2",
-    "components_in_polygons2",
     "components_inside2",
     "condensed",
     "constrained2",
@@ -1756,6 +1757,16 @@ def antipodes(
 ) -> NDArray[np.int32]:
     """The pairs with an empty open diametral ball that are not Delaunay edges."""
 
+def areas2(
+    made: ConstrainedTriangulation, segments: NDArray[np.int32], polygons: NDArray[np.int32]
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """The component of each triangle, and the first polygon whose rings contain each
+    component, or -1. Triangles that share unconstrained edges are in one component.
+    `polygons` has the polygon of each of the segments that were given, -1 for sides of
+    none. A polygon with a missing side contains nothing; what is outside the triangles
+    is in no polygon.
+    """
+
 def around(edges: NDArray[np.int32], npoints: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """The neighbors of each vertex along `edges`: `(indptr, indices)`."""
 
@@ -1773,6 +1784,11 @@ def circumcenters(
     points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
 ) -> NDArray[np.float64]:
     """The centers of the circles or spheres through the corners of simplices."""
+
+def closed_polygons(ends: NDArray[np.int32], polygons: NDArray[np.int32]) -> NDArray[np.int32]:
+    """The polygon of each segment, or -1, without polygons of which an odd number of sides
+    meet at some vertex.
+    """
 
 def coarsen3(
     points: NDArray[np.float64],
@@ -1809,18 +1825,6 @@ def components_beside2(
     ],
 ) -> NDArray[np.int32]:
     """The components to the left and right of each subsegment, (q, 2)."""
-
-def components_in_polygons2(
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    constrained: NDArray[np.bool_],
-    segments: NDArray[np.int32],
-    covers: tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32]],
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """The component of each triangle, and pairs of a component and a polygon whose rings
-    contain it, ascending, (k, 2). Triangles that share unconstrained edges are in one
-    component; what is outside the triangles is in no polygon.
-    """
 
 def components_inside2(
     parts: tuple[
@@ -1862,9 +1866,15 @@ def constrained2(
     max_vertices: int,
     method: str,
     workers: int,
-) -> tuple[ConstrainedTriangulation, tuple[tuple[str, float], ...]]:
+    polygons: NDArray[np.int32] | None = None,
+) -> tuple[
+    ConstrainedTriangulation,
+    tuple[tuple[str, float], ...],
+    tuple[NDArray[np.int32], NDArray[np.int32]] | None,
+]:
     """The constrained triangulation of points and segments, as arrays that cannot be made
-    writeable, and the seconds of its stages.
+    writeable, the seconds of its stages, and, if the polygon of each segment is given,
+    what `areas2` returns.
     """
 
 def contour_bands2(

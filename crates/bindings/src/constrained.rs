@@ -2,11 +2,12 @@
 
 use delone_core::Point2;
 use delone_core::base::error::{Error, Result};
-use delone_core::constrained::nesting::{Covers, Parts, odd_pairs};
+use delone_core::base::memory::copied;
+use delone_core::constrained::nesting::{Covers, Parts, closed, first_of, odd_pairs};
 use delone_core::constrained::{
     Constrained, Options, Rule, components, constrain, numbered_by_smallest, polygon, simple_ring,
 };
-use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::arrays::{
@@ -15,7 +16,7 @@ use crate::arrays::{
 };
 use crate::errors::Outcome;
 use crate::given::{pairs, unequal};
-use crate::results::{Stages, len_of, made_of_arrays, require_equal, rows_of};
+use crate::results::{Borrowed, Stages, len_of, made_of_arrays, require_equal, rows_of};
 use crate::signals::watched;
 use crate::triangulation::{method_of, seconds};
 
@@ -83,8 +84,9 @@ impl ConstrainedTriangulation {
 }
 
 /// The constrained triangulation of points and segments, as arrays that cannot be made writeable,
-/// and the seconds of its stages.
+/// the seconds of its stages, and, if the polygon of each segment is given, what `areas2` returns.
 #[pyfunction]
+#[pyo3(signature = (points, segments, split, conforming, max_vertices, method, workers, polygons=None))]
 #[expect(clippy::too_many_arguments, reason = "the options, one by one")]
 pub fn constrained2<'py>(
     py: Python<'py>,
@@ -95,10 +97,11 @@ pub fn constrained2<'py>(
     max_vertices: usize,
     method: &str,
     workers: usize,
-) -> Outcome<(ConstrainedTriangulation, Stages)> {
+    polygons: Option<PyReadonlyArray1<'py, i32>>,
+) -> Outcome<(ConstrainedTriangulation, Stages, Option<Areas>)> {
     let method = method_of(method)?;
     let points: &[Point2] = rows(&points, "points")?;
-    let segments = pairs(&segments, points.len(), "segments")?;
+    let given = pairs(&segments, points.len(), "segments")?;
     let options = Options {
         split,
         conforming,
@@ -106,9 +109,11 @@ pub fn constrained2<'py>(
         method,
         workers,
     };
-    let made = watched(py, |watch| constrain(points, &segments, options, watch))?;
+    let made = watched(py, |watch| constrain(points, &given, options, watch))?;
     let stages = seconds(py, &made.stages)?;
-    Ok((arrays_of(py, made)?, stages))
+    let made = arrays_of(py, made)?;
+    let areas = polygons.map(|polygons| areas_of(py, &made, segments, polygons));
+    Ok((made, stages, areas.transpose()?))
 }
 
 fn arrays_of(py: Python<'_>, made: Constrained) -> Outcome<ConstrainedTriangulation> {
@@ -260,27 +265,79 @@ pub fn components_inside2(
     table(py, found)
 }
 
-/// The component of each triangle, and pairs of a component and a polygon whose rings contain it,
-/// ascending, (k, 2). Triangles that share unconstrained edges are in one component; what is outside
-/// the triangles is in no polygon.
+/// `tuple[NDArray[np.int32], NDArray[np.int32]]`: the component of each triangle, and the polygon of
+/// each component.
+type Areas = (Column<i32>, Column<i32>);
+
+/// The component of each triangle, and the first polygon whose rings contain each component, or -1.
+/// Triangles that share unconstrained edges are in one component. `polygons` has the polygon of each
+/// of the segments that were given, -1 for sides of none. A polygon with a missing side
+/// contains nothing; what is outside the triangles is in no polygon.
 #[pyfunction]
-pub fn components_in_polygons2(
+pub fn areas2(
     py: Python<'_>,
-    simplices: PyReadonlyArray2<'_, i32>,
-    neighbors: PyReadonlyArray2<'_, i32>,
-    constrained: PyReadonlyArray2<'_, bool>,
+    made: PyRef<'_, ConstrainedTriangulation>,
     segments: PyReadonlyArray2<'_, i32>,
-    covers: CoverArrays<'_>,
-) -> Outcome<(Column<i32>, Table<i32>)> {
-    let component = components2(py, neighbors.clone(), constrained.clone())?;
-    let of = component.bind(py).readonly();
-    let first = flat(&of, "component")?
-        .iter()
-        .max()
-        .map_or(0, |&last| last as usize + 1);
-    let parts = PartArrays(simplices, neighbors, constrained, of.clone(), segments);
-    let found = components_inside2(py, parts, covers, first)?;
-    Ok((component, found))
+    polygons: PyReadonlyArray1<'_, i32>,
+) -> Outcome<Areas> {
+    areas_of(py, &made, segments, polygons)
+}
+
+fn areas_of(
+    py: Python<'_>,
+    made: &ConstrainedTriangulation,
+    segments: PyReadonlyArray2<'_, i32>,
+    polygons: PyReadonlyArray1<'_, i32>,
+) -> Outcome<Areas> {
+    let duplicates = made.duplicates.lend(py)?;
+    let mut ends = copied(rows::<i32, 2>(&segments, "segments")?)?;
+    // Equal points are one vertex; duplicates ascend by row.
+    let duplicates: &[[i32; 2]] = rows(&duplicates, "duplicates")?;
+    for end in ends.as_flattened_mut() {
+        if let Ok(at) = duplicates.binary_search_by_key(end, |pair| pair[0]) {
+            *end = duplicates[at][1];
+        }
+    }
+    let polygons = column(py, sides_of_closed(py, &ends, &polygons)?);
+    let [simplices, neighbors] = [made.simplices.lend(py)?, made.neighbors.lend(py)?];
+    let (walls, pieces) = (made.constrained.lend(py)?, made.segments.lend(py)?);
+    let component = components2(py, neighbors.clone(), walls.clone())?;
+    let of = component.lend(py)?;
+    let last = flat(&of, "component")?.iter().max();
+    let count = last.map_or(0, |&last| last as usize + 1);
+    let parts = PartArrays(simplices, neighbors, walls, of.clone(), pieces);
+    let covers = CoverArrays(
+        made.source_start.lend(py)?,
+        made.source.lend(py)?,
+        polygons.lend(py)?,
+    );
+    let inside = components_inside2(py, parts, covers, count)?.lend(py)?;
+    let first = first_of(rows(&inside, "inside")?, count)?;
+    Ok((component, column(py, first)))
+}
+
+/// The polygon of each segment, or -1, without polygons of which an odd number of sides meet at some
+/// vertex.
+#[pyfunction]
+pub fn closed_polygons(
+    py: Python<'_>,
+    ends: PyReadonlyArray2<'_, i32>,
+    polygons: PyReadonlyArray1<'_, i32>,
+) -> Outcome<Column<i32>> {
+    let found = sides_of_closed(py, rows(&ends, "ends")?, &polygons)?;
+    Ok(column(py, found))
+}
+
+fn sides_of_closed(
+    py: Python<'_>,
+    ends: &[[i32; 2]],
+    polygons: &PyReadonlyArray1<'_, i32>,
+) -> Outcome<Vec<i32>> {
+    let polygons = flat(polygons, "polygons")?;
+    if polygons.len() != ends.len() {
+        return Err(unequal().into());
+    }
+    watched(py, |watch| closed(ends, polygons, watch))
 }
 
 /// Pairs of a subsegment and a polygon of which an odd number of sides cover it, ascending, (k, 2).

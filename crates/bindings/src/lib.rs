@@ -67,7 +67,7 @@ mod _core {
     use super::consistency::fault;
     #[pymodule_export]
     use super::constrained::{
-        ConstrainedTriangulation, components_beside2, components_in_polygons2, components_inside2,
+        ConstrainedTriangulation, areas2, closed_polygons, components_beside2, components_inside2,
         components2, constrained2, numbered_components, odd_pairs2, polygon2, ring2,
     };
     #[pymodule_export]

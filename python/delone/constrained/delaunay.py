@@ -213,7 +213,7 @@ class ConstrainedDelaunay(Segmented):
         """Let the core triangulate, and store the result with the input."""
         few = options.workers is None and len(points) < _FEW
         try:
-            made, stages = _core.constrained2(
+            made, stages, areas = _core.constrained2(
                 points,
                 given.segments,
                 options.crossing == "split",
@@ -221,13 +221,14 @@ class ConstrainedDelaunay(Segmented):
                 options.max_points,
                 options.method,
                 1 if few else as_workers(options.workers),
+                given.origin.polygons if options.boundary == "polygons" else None,
             )
         except InternalError as error:
             error.points = points
             raise
         if len(made.added):
             points = np.concatenate((points, made.added))
-        self._set(points, given, made, options, dict(stages))
+        self._set(points, given, made, options, dict(stages), areas=areas)
 
     def triangles_along(self, a: ArrayLike, b: ArrayLike) -> Indices:
         """Return the triangles that a straight line meets, in order.

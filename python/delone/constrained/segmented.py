@@ -14,17 +14,18 @@ import numpy as np
 
 from delone import _core
 from delone._base.arrays import as_workers
-from delone._base.duplicates import vertices_of
 from delone._base.immutable import kept, sealed
 from delone._base.renames import renamed
 from delone._tiling.triangulation import PointTriangulation
-from delone.constrained import coverage, regions, segments
+from delone.constrained import regions, segments
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from delone._base.types import Bools, Floats, Indices
     from delone.constrained.segments import SegmentReport
+
+    Areas = tuple[Indices, Indices]
 
 __all__ = ["Given", "Options", "Origin", "Segmented"]
 
@@ -66,6 +67,11 @@ class Origin(NamedTuple):
             return cls(none, _NO_RINGS[:count], none)
         none = sealed(np.full(count, -1, dtype=np.int32))
         return cls(none, sealed(np.zeros(count, dtype=bool)), none)
+
+    @property
+    def polygons(self) -> Indices:
+        """The polygon that each segment is a side of, (s,), or -1."""
+        return np.where(self.rings, self.geometries, np.int32(-1))
 
 
 class Given(NamedTuple):
@@ -111,15 +117,20 @@ class Segmented(segments.SegmentArrays, PointTriangulation):
         made: _core.ConstrainedTriangulation,
         options: Options,
         stages: Any,
+        *,
+        areas: Areas | None = None,
     ) -> None:
-        """Set everything; arrays other than the points cannot be made writeable."""
+        """Set everything; arrays other than the points cannot be made writeable.
+
+        `areas` are the components and their polygons, if the core has found them.
+        """
         put = object.__setattr__
         put(self, "_given", given)
         put(self, "_made", made)
         put(self, "_options", options)
         put(self, "_points", sealed(points))
         simplices, neighbors, constrained = made.simplices, made.neighbors, made.constrained
-        removed, found = self._removed()
+        removed, found = self._removed(areas)
         number = None
         if removed is not None:
             rows = np.flatnonzero(~removed)
@@ -139,7 +150,7 @@ class Segmented(segments.SegmentArrays, PointTriangulation):
         )
         self._cache.update(found)
 
-    def _removed(self) -> tuple[Bools | None, dict[str, Indices]]:
+    def _removed(self, areas: Areas | None) -> tuple[Bools | None, dict[str, Indices]]:
         """Return which triangles of the hull are in holes or outside; None if all are kept.
 
         The second result has what was found on the way, by the names of its attributes.
@@ -148,7 +159,7 @@ class Segmented(segments.SegmentArrays, PointTriangulation):
         if boundary == "hull" and not len(holes):
             return None, {}
         if boundary == "polygons":
-            component, polygons = self._first_polygons()
+            component, polygons = areas or self._areas()
             found = {"_component": component, "_polygons": polygons}
             removed = polygons < 0
         else:
@@ -162,18 +173,15 @@ class Segmented(segments.SegmentArrays, PointTriangulation):
             removed[component[triangle[(triangle >= 0) & ~on_segment]]] = True
         return removed[component] if removed.any() else None, found
 
-    def _first_polygons(self) -> tuple[Indices, Indices]:
+    def _areas(self) -> Areas:
         """Return the component of each triangle of the hull, and the polygon of each component."""
-        origin, npoints = self._given.origin, len(self._points)
-        ends = vertices_of(self._made.duplicates, npoints)[self._given.segments]
-        sides = coverage.closed_rings(ends, origin.geometries, origin.rings)
-        return coverage.first_polygons(self._made, origin.geometries, sides)
+        return _core.areas2(self._made, self._given.segments, self._given.origin.polygons)
 
     @property
     @kept
     def _polygons(self) -> Indices:
         """The first polygon that contains each component, or -1."""
-        return self._first_polygons()[1]
+        return self._areas()[1]
 
     def _tiles(self) -> regions.Tiling:
         made = self._made

@@ -159,7 +159,7 @@ def of_constrained(
     marked = np.flatnonzero(segment_markers[rows])[::-1]
     markers[owner[marked]] = segment_markers[rows[marked]]
     geometries = np.full(len(ends), -1, dtype=np.int32)
-    geometries[: len(start) - 1] = base.geometry_of_segment[rows[start[:-1]]]
+    geometries[: len(start) - 1] = base._given.origin.geometries[rows[start[:-1]]]
     lines = Lines(
         ends, np.concatenate((start, last)), rows, made.forward, fixed, markers, geometries
     )
@@ -318,7 +318,7 @@ def triangulated(
     count = as_workers(workers)
     # In this unit, triangles, and therefore sums, have the same order as with usual magnitudes.
     points = points / unit_of(points)
-    made, _ = _core.constrained2(points, segments, False, False, 0, "auto", count)
+    made, *_ = _core.constrained2(points, segments, False, False, 0, "auto", count)
     walls = made.simplices, made.neighbors, made.constrained
     return made, labels_beside(walls, edges, labels, len(points))
 

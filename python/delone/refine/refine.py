@@ -219,13 +219,13 @@ def filled(
     clock = time.perf_counter()
     if not base.nsimplex:
         raise InputError(f"the domain is empty: {_why_empty(base)}")
-    count = len(base.input_segments)
+    part = base.part_of_segment
     start = domains.of_constrained(
         base,
         region=region,
-        segment_markers=_segment_markers(base, markers[0]),
+        segment_markers=_segment_markers(part, markers[0]),
         point_markers=as_labels(markers[1], base.npoints - base.nadded, name="point_markers"),
-        frozen=_fixed(fixed, count),
+        frozen=_fixed(fixed, len(part)),
     )
     if isinstance(fixed, str):
         start = start._replace(lines=start.lines._replace(frozen=_on_boundary(start)))
@@ -234,11 +234,11 @@ def filled(
     return Mesh._of(made, counts, limits.min_angle, stages, limits.workers)._refer(base)
 
 
-def _segment_markers(base: ConstrainedDelaunay, given: ArrayLike | None) -> Indices:
+def _segment_markers(part: Indices, given: ArrayLike | None) -> Indices:
     """Return the given markers; by default one for each ring and line of geometries."""
     if given is None:
-        return base.part_of_segment + np.int32(1)
-    return as_labels(given, len(base.input_segments), name="segment_markers")
+        return part + np.int32(1)
+    return as_labels(given, len(part), name="segment_markers")
 
 
 def _fixed(fixed: bool | str | ArrayLike, count: int) -> Bools:

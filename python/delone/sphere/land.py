@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from delone import _core
 from delone._base.counting import agreed, counted
 from delone._base.georeference import caller_level
 from delone._tiling.plane import topology
-from delone.constrained.coverage import beside, closed_rings, containing
+from delone.constrained.coverage import beside, containing
 from delone.errors import InputError
 from delone.sphere.sides import Origin, PolygonWarning
 
@@ -56,14 +57,14 @@ def first_polygon(
     """
     origin, ends, winding = rings
     count = int(component.max(initial=-1)) + 1
-    closed = closed_rings(ends, origin.geometries, origin.rings)
+    polygons = np.where(origin.rings, origin.geometries, np.int32(-1))
+    polygons = _core.closed_polygons(ends, polygons)
+    closed = polygons >= 0
     if not closed.any():
         return np.full(count, -1, dtype=np.int32)
     sides = beside(made, component)
     # The last component is the part that no triangle covers.
-    inside = containing(
-        made, np.where(closed, origin.geometries, -1), component, from_outside=False
-    )
+    inside = containing(made, polygons, component, from_outside=False)
     size: Floats = np.bincount(component, weights=areas, minlength=count + 1).astype(np.float64)
     size[count] = max(4 * math.pi - float(areas.sum()), 0.0)
     outer = _outer(made, origin, closed)

@@ -7,8 +7,9 @@
 
 use crate::base::error::{Error, Result};
 use crate::base::joins::{Facets, ascending};
-use crate::base::memory::{filled, make_room, push, with_room};
+use crate::base::memory::{copied, filled, make_room, push, with_room};
 use crate::base::watch::{Pace, Watch};
+use crate::order;
 
 /// Items between two checks for interruption.
 const LOT: usize = 1 << 14;
@@ -186,6 +187,40 @@ fn toggle(inside: &mut Vec<i32>, range: std::ops::Range<usize>, crossed: &[[i32;
     inside.extend(crossed);
 }
 
+/// The first polygon of each component, or -1, of the pairs of a component and a polygon, ascending.
+pub fn first_of(pairs: &[[i32; 2]], components: usize) -> Result<Vec<i32>> {
+    let mut first = filled(components, -1)?;
+    for &[component, polygon] in pairs.iter().rev() {
+        first[component as usize] = polygon;
+    }
+    Ok(first)
+}
+
+/// The polygon of each segment, or -1, without the polygons of which an odd number of sides meet at
+/// some vertex: there a side is missing, and the polygon has no inside.
+pub fn closed(ends: &[[i32; 2]], polygons: &[i32], watch: &Watch) -> Result<Vec<i32>> {
+    let sides = ends
+        .iter()
+        .zip(polygons)
+        .filter(|(_, polygon)| **polygon >= 0);
+    let mut meetings = with_room(2 * ends.len())?;
+    meetings.extend(sides.flat_map(|(ends, &polygon)| ends.map(|v| (polygon, v))));
+    order::sort_by(&mut meetings, watch, Ord::cmp)?;
+    let mut open = Vec::new();
+    for run in meetings.chunk_by(|a, b| a == b) {
+        if run.len() % 2 == 1 {
+            push(&mut open, run[0].0)?;
+        }
+    }
+    let mut found = copied(polygons)?;
+    for polygon in &mut found {
+        if open.binary_search(polygon).is_ok() {
+            *polygon = -1;
+        }
+    }
+    Ok(found)
+}
+
 /// Pairs of a subsegment and a polygon of which an odd number of sides cover it, ascending.
 pub fn odd_pairs(covers: Covers, watch: &Watch) -> Result<Vec<[i32; 2]>> {
     let mut found = with_room(covers.source.len())?;
@@ -235,5 +270,25 @@ mod tests {
         assert_eq!(found, [[0, 4], [1, 7]]);
         let found = parts.containing(&segments, covers, 0, &watch).unwrap();
         assert_eq!(found, [[1, 4], [1, 7], [2, 4]]);
+        assert_eq!(first_of(&found, 4).unwrap(), [-1, 4, 4, -1]);
+    }
+
+    /// A triangle, a path, a repeated side and a side of no polygon.
+    #[test]
+    fn polygons_with_a_missing_side_have_none() {
+        let ends = [
+            [0, 1],
+            [1, 2],
+            [2, 0],
+            [3, 4],
+            [5, 4],
+            [6, 7],
+            [7, 6],
+            [8, 8],
+            [0, 9],
+        ];
+        let polygons = [2, 2, 2, 0, 0, 5, 5, 3, -1];
+        let found = closed(&ends, &polygons, &Watch::idle()).unwrap();
+        assert_eq!(found, [2, 2, 2, -1, -1, 5, 5, 3, -1]);
     }
 }
