@@ -15,7 +15,7 @@ from delone import (
     InputError,
     NonFiniteError,
 )
-from delone.interpolate import Grid
+from delone.interpolate import Grid, raster
 from delone.io import write_mesh
 from delone.terrain import TIN, slopes
 
@@ -382,3 +382,15 @@ def test_nodes_of_rasters_are_checked(what, x, words):
     if what != "hillshade":
         with pytest.raises(InputError, match='azimuth: these options are for what="hillshade"'):
             tin.raster(what, resolution=1, azimuth=10)
+
+
+@pytest.mark.parametrize(
+    "nodes",
+    [{"resolution": 1}, {"shape": (10, 10)}, {"x": np.arange(0, 5, 0.5), "y": np.arange(10)}],
+)
+def test_rasters_beyond_the_free_memory_are_refused(monkeypatch, nodes):
+    tin = TIN.from_points([(0, 0, 0), (10, 0, 4), (10, 10, 4), (0, 10, 0)])
+    assert tin.raster(**nodes).values.shape == (10, 10)
+    monkeypatch.setattr(raster, "free_memory", lambda: raster._SPARE + 8 * 99)
+    with pytest.raises(MemoryError, match="10 x 10 cells"):
+        tin.raster(**nodes)

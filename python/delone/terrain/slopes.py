@@ -134,7 +134,6 @@ def raster(tin: Surface, what: str, options: dict[str, Any]) -> Grid:
     tell = as_callback(options.pop("progress", None), name="progress")
     tolerance = as_nonnegative(options.pop("tolerance", 0.0), name="tolerance")
     x, y = _nodes(tin, options)
-    require_memory(len(x), len(y), 1)
     values = np.empty((len(y), len(x)))
     rows = max(1, _BLOCK // len(x))
     for start in range(0, len(y), rows):
@@ -164,7 +163,9 @@ def measure(slopes: Floats, what: str, light: dict[str, float]) -> Floats:
 
 def _nodes(tin: Surface, options: dict[str, Any]) -> tuple[Floats, Floats]:
     if "x" in options and "y" in options and len(options) == 2:
-        return as_nodes(options["x"], "x"), as_nodes(options["y"], "y")
+        x, y = as_nodes(options["x"], "x"), as_nodes(options["y"], "y")
+        require_memory(len(x), len(y), 1)
+        return x, y
     unknown = set(options) - {"resolution", "shape", "bounds"}
     if unknown & set(_LIGHT):
         raise InputError(f'{", ".join(sorted(unknown))}: these options are for what="hillshade"')
