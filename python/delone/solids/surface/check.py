@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from delone._core import CheckedSurface
 
-__all__ = ["as_faces", "as_pairs", "check_surface"]
+__all__ = ["as_faces", "as_pairs", "check_surface", "checked"]
 
 
 def check_surface(
@@ -104,8 +104,15 @@ def check_surface(
     """
     given, rows = as_faces(points, faces)
     most = LARGEST_LIMIT if limit is None else as_limit(limit, name="limit")
-    found = _core.check_surface3(given, rows, most, as_workers(workers))
-    return _report(given, rows, found)
+    return checked(given, rows, most, workers)
+
+
+def checked(
+    points: NDArray[np.float64], faces: NDArray[np.int32], limit: int, workers: int | None
+) -> SurfaceCheck:
+    """Check a surface, as returned by `as_faces`."""
+    found = _core.check_surface3(points, faces, limit, as_workers(workers))
+    return _report(points, faces, found)
 
 
 def as_faces(points: ArrayLike, faces: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int32]]:

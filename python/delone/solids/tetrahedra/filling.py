@@ -10,12 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import (
-    as_callback,
-    as_choice,
-    as_flag,
-    as_workers,
-)
+from delone._base.arrays import LARGEST_LIMIT, as_callback, as_choice, as_flag, as_workers
 from delone._base.counting import counted, listed
 from delone._tiling.space.locking import Sides, cells, directions
 from delone.errors import (
@@ -27,7 +22,8 @@ from delone.errors import (
     InternalError,
     ShapeError,
 )
-from delone.solids.surface import check_surface, imprint_surface
+from delone.solids.surface import imprint_surface
+from delone.solids.surface.check import checked
 from delone.solids.tetmesh.refinement import as_bounds, refined
 from delone.solids.tetmesh.tetmesh import TetMesh
 from delone.solids.tetrahedra import arguments, seeds
@@ -509,10 +505,10 @@ class _Stages(NamedTuple):
 
 def _checked(points: Floats, faces: Indices, workers: int | None) -> SurfaceCheck:
     """Return the check of a surface that can be filled, with all pairs that touch."""
-    check = check_surface(points, faces, limit=_LISTED, workers=workers)
+    check = checked(points, faces, _LISTED, workers)
     check.raise_if_bad()
     if len(check.pairs) < check.npairs:
-        check = check_surface(points, faces, limit=None, workers=workers)
+        check = checked(points, faces, LARGEST_LIMIT, workers)
     return check
 
 
