@@ -38,6 +38,7 @@ __all__ = [
     "is_shapely",
     "no_geometry",
     "parts_of",
+    "polygon_of",
     "require_finite_parts",
     "rings_of_numbers",
     "steps_of",
@@ -143,7 +144,7 @@ def _batches(given: Any, name: str) -> Iterator[Any]:
         if rings is None:
             yield from _of_iterable(given, name)
         else:
-            yield {"type": "Polygon", "coordinates": [ring.tolist() for ring in rings]}
+            yield polygon_of(rings)
 
 
 def rings_of_numbers(given: Any, name: str) -> list[Floats] | None:
@@ -158,6 +159,11 @@ def rings_of_numbers(given: Any, name: str) -> list[Floats] | None:
     if not all(isinstance(each, list | tuple | np.ndarray) and _is_ring(each) for each in given):
         return None
     return [as_points(each, ndim=2, name=name) for each in given]
+
+
+def polygon_of(rings: list[Floats]) -> dict[str, Any]:
+    """Return rings of coordinates as one polygon."""
+    return {"type": "Polygon", "coordinates": rings}
 
 
 def _is_ring(given: list[Any] | tuple[Any, ...] | NDArray[Any]) -> bool:
@@ -367,6 +373,10 @@ def _of_mapping(mapping: Any, name: str) -> Iterator[tuple[Floats, int]]:
 
 
 def _run(coordinates: Any, what: str) -> Floats:
+    plain = type(coordinates) is np.ndarray and coordinates.dtype == np.float64
+    if plain and coordinates.shape[1:] == (2,):  # as `as_points` returns rings
+        ring: Floats = coordinates
+        return ring
     refuse_masks(coordinates, f"a {what}")
     try:
         pairs = [tuple(row)[:2] for row in coordinates if len(row)]

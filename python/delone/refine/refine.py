@@ -295,8 +295,9 @@ def _base(
     else:
         _refuse_points(domain)
         # A ring of coordinates that crosses itself is more likely a set of points.
-        is_ring = geodata.rings_of_numbers(domain, "domain") is not None
-        how = crossing or ("raise" if is_ring else "split")
+        rings = geodata.rings_of_numbers(domain, "domain")
+        how = crossing or ("split" if rings is None else "raise")
+        domain = domain if rings is None else geodata.polygon_of(rings)
         base = inside_of(domain, crossing=how, workers=workers, planar=planar)
         region = base.polygon_of_simplex if base._options.boundary == "polygons" else base.region
     return base, region
