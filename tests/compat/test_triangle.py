@@ -185,13 +185,13 @@ class TestRefinedAgain:
 
 
 def test_segments_through_vertices_of_given_triangles() -> None:
-    """A diagonal passes through the center, which is a corner of all given triangles."""
+    """Diagonals pass through the center, a corner of all triangles; half of one is given again."""
     square = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 1)]
     given = {
         "vertices": square,
         "triangles": [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)],
-        "segments": [(0, 2), (3, 1)],
-        "segment_markers": [5, 7],
+        "segments": [(0, 2), (0, 4), (3, 1)],
+        "segment_markers": [5, 6, 7],
     }
     made = triangulate(given, "rpqa0.1")
     ends = np.asarray(made["vertices"])[made["segments"]]
@@ -200,4 +200,4 @@ def test_segments_through_vertices_of_given_triangles() -> None:
     falling = (ends.sum(axis=2) == 2).all(axis=1)
     assert rising.sum() > 2 and falling.sum() > 2
     assert set(marker[rising]) == {5} and set(marker[falling]) == {7}
-    assert not set(marker[~rising & ~falling]) & {5, 7}
+    assert not set(marker[~rising & ~falling]) & {5, 6, 7}

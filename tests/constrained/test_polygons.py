@@ -13,7 +13,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import delone
-from delone import ConstrainedDelaunay, PolygonTriangles, errors, from_geometry, triangulate_polygon
+from delone import (
+    ConstrainedDelaunay,
+    PolygonTriangles,
+    _core,
+    errors,
+    from_geometry,
+    triangulate_polygon,
+)
 from delone.constrained.geodata import parts_of
 
 RING = [(0, 0), (6, 0), (6, 6), (0, 6)]
@@ -521,3 +528,37 @@ def test_a_feature_without_a_geometry():
     collection = {"type": "FeatureCollection", "features": features}
     assert delone.Overlaps(collection, [triangle]).areas.tolist() == [0.5]
     assert delone.Overlaps({"a": 1, **triangle}, [triangle]).areas.tolist() == [0.5]
+
+
+def test_closed_lines_are_no_polygons() -> None:
+    """A closed line around a polygon, and one inside of it, contain nothing."""
+
+    def ring(low: int, high: int) -> list[tuple[int, int]]:
+        return [(low, low), (high, low), (high, high), (low, high), (low, low)]
+
+    lines = [{"type": "LineString", "coordinates": ring(*ends)} for ends in ((0, 9), (4, 5))]
+    square = {"type": "Polygon", "coordinates": [ring(3, 6)]}
+    mesh = delone.from_geometry([lines[0], square, lines[1]], boundary="polygons")
+    assert float(mesh.areas.sum()) == 9 and set(mesh.polygon_of_simplex.tolist()) == {1}
+    hull = delone.from_geometry([lines[0], square, lines[1]])
+    inside = hull.polygon_of_simplex == 1
+    assert float(hull.areas[inside].sum()) == 9 and set(hull.polygon_of_simplex.tolist()) == {-1, 1}
+
+
+def test_rings_may_meet_at_equal_points() -> None:
+    """The last side ends at a point that repeats the first one; without it, the ring is open."""
+    points = np.array([(0, 0), (1, 0), (1, 1), (0, 0)], dtype=float)
+    sides = np.array([(0, 1), (1, 2), (2, 3)], dtype=np.int32)
+    of = np.full(3, 4, dtype=np.int32)
+
+    def polygons(count: int, of: Any) -> list[int]:
+        options = False, False, 0, "auto", 1
+        made, _, areas = _core.constrained2(points, sides[:count], *options, of)
+        assert areas is not None
+        again = _core.areas2(made, sides[:count], of)
+        assert all(map(np.array_equal, areas, again))
+        return list(areas[1].tolist())
+
+    assert polygons(3, of) == [4] and polygons(2, of[:2]) == [-1]
+    with pytest.raises(errors.ShapeError, match="differ in length"):
+        polygons(3, of[:2])
