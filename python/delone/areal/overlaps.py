@@ -58,8 +58,9 @@ class Overlaps(SharedAreas[AreaWeights], Stored):
     Raises
     ------
     InputError
-        A geometry is not a polygon, a cell is unbounded, coordinates are longitudes and latitudes,
-        or the reference systems differ and pyproj cannot transform.
+        A geometry is not a polygon, has a hole that is not inside its outer ring, or holes or parts
+        that overlap; a cell is unbounded, coordinates are longitudes and latitudes, or the
+        reference systems differ and pyproj cannot transform.
     CrossingSegmentsError
         Sides of a polygon cross.
     MissingExtraError

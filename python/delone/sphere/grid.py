@@ -17,6 +17,7 @@ from delone.sphere.gaussian import gaussian_bounds
 from delone.sphere.grid_cells import GridCells
 from delone.sphere.healpix import healpix_corners
 from delone.sphere.large import tell_clockwise, wound
+from delone.sphere.nested import require_nested
 from delone.sphere.rings import as_bounds, as_corners, as_starts, merged_corners
 
 if TYPE_CHECKING:
@@ -498,8 +499,8 @@ class Grid(GridCells):
             A geometry is not a polygon, or its reference system is projected; `winding` is unknown,
             or the outer rings of a geometry run in both directions.
         DirectionError
-            As for `from_curvilinear`; or a hole is not inside its outer ring, or is inside another
-            hole. With `winding` "ccw" or "cw", holes are not checked.
+            As for `from_curvilinear`; or a hole is not inside its outer ring, or holes or parts of
+            a geometry overlap. A part inside a hole of another part is valid.
         MissingExtraError
             shapely is not installed.
 
@@ -512,6 +513,8 @@ class Grid(GridCells):
         -----
         Polygons that are cut at 180 degrees fit together there. A polygon that is completed along
         the edge of the map, with corners at latitude 90, is treated as a polygon around the pole.
+        Parts of a geometry may have common corners and sides. Their sides cross if the corners are
+        rounded differently and `merge` is 0.
 
         Examples
         --------
@@ -523,10 +526,7 @@ class Grid(GridCells):
         given = rings_of.geometries(geometries, degrees=degrees, workers=workers)
         vectors, merged = merged_corners(given.vectors, _as_merge(merge))
         arrays = (vectors, given.rings, given.cells, given.holes)
-        made = cls._wound(arrays, (len(given.cells) - 1,), merged, winding, workers)
-        if winding in {None, "smaller"}:
-            rings_of.require_nested(arrays, workers)
-        return made
+        return cls._wound(arrays, (len(given.cells) - 1,), merged, winding, workers)
 
     @classmethod
     def from_voronoi(cls, diagram: Voronoi, *, workers: int | None = None) -> Self:
@@ -690,9 +690,11 @@ class Grid(GridCells):
         workers: int | None,
     ) -> Self:
         """Return the grid of polygons on the side of their corners that `winding` selects."""
+        given, divided = arrays, np.zeros(0, dtype=np.int64)
         if winding is not None:
-            arrays = wound(arrays, winding, workers)
+            arrays, divided = wound(arrays, winding, workers)
         made = cls._of("arc", arrays, shape, merged, workers)
+        require_nested(given, divided, workers)
         if winding is None:
             tell_clockwise(made._checked.turned, made.areas)
         return made

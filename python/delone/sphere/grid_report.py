@@ -83,7 +83,7 @@ class GridFaults(ReadOnly):
     rims : tuple of ndarray of int64
         For each closed ring of sides that have a cell on one side only, the cells along it,
         ascending. Cells that have no side in common, such as those of islands, have different
-        rings, so a hole can have several.
+        rings, so a hole can have several. Parts of a cell count like cells of their own.
     slivers : int
         Gaps and overlaps of less than 1e-12 of the smallest cell along them, or narrower than 2e-15
         radians, such as those between cells whose corners are rounded: closed rings, and chains of

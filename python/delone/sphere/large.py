@@ -20,6 +20,7 @@ from delone._base.georeference import caller_level
 from delone.errors import CrossingSegmentsError, DirectionError, InputError
 from delone.sphere.constrained import WINDINGS, ConstrainedDelaunay, Given
 from delone.sphere.land import Rings, first_polygon
+from delone.sphere.nested import nested, refuse
 from delone.sphere.sides import Origin, PolygonWarning
 
 if TYPE_CHECKING:
@@ -63,10 +64,11 @@ class _Shared(NamedTuple):
 
 
 class _Part(NamedTuple):
-    """The triangles of a cell, (k, 3, 3), and their area."""
+    """The triangles of a cell, (k, 3, 3), their area, and whether its rings nest as they must."""
 
     triangles: Floats
     area: float
+    nested: bool
 
 
 class Parts:
@@ -133,10 +135,10 @@ def overlaps_of(one: Any, other: Any, workers: int) -> Any:
     )
 
 
-def wound(arrays: Arrays, winding: str, workers: int | None) -> Arrays:
+def wound(arrays: Arrays, winding: str, workers: int | None) -> tuple[Arrays, Rows]:
     """Return cells on the side of their outer rings that `winding` selects.
 
-    Those that no hemisphere contains become triangles.
+    Those that no hemisphere contains become triangles, and are returned, too.
     """
     as_choice(winding, WINDINGS, name="winding")
     vectors, rings, cells, holes = arrays
@@ -167,7 +169,9 @@ def wound(arrays: Arrays, winding: str, workers: int | None) -> Arrays:
             stacklevel=caller_level(),
         )
     # Rings that cancel out have no triangles, and remain an error.
-    return _replaced(arrays, {row: p.triangles for row, p in parts.items() if len(p.triangles)})
+    found = {row: part.triangles for row, part in parts.items() if len(part.triangles)}
+    refuse(np.array([row for row in found if not parts[row].nested], dtype=np.int64))
+    return _replaced(arrays, found), np.array(list(found), dtype=np.int64)
 
 
 def tell_clockwise(turned: Bools, areas: Floats) -> None:
@@ -212,8 +216,10 @@ def _triangles(arrays: Arrays, row: int, winding: str, workers: int | None) -> _
     if (times > 1).any():
         x, y = mesh.lonlat[at[times > 1][0]].tolist()
         raise DirectionError(f"cell {row} has sides that cross at ({x:g}, {y:g})", rows=[row])
+    of_side = np.repeat(np.arange(len(own)), np.diff(rings[own.start : own.stop + 1]))
+    right = nested(mesh, inside == 0, of_side.astype(np.int32), holes[own.start : own.stop])
     chosen = inside[mesh._component] == 0
-    return _Part(mesh.vectors[mesh.simplices[chosen]], float(mesh.areas[chosen].sum()))
+    return _Part(mesh.vectors[mesh.simplices[chosen]], float(mesh.areas[chosen].sum()), right)
 
 
 def _passed(mesh: ConstrainedDelaunay, segments: Rows, count: int) -> Rows:

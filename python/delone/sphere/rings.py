@@ -15,11 +15,10 @@ from delone._base.arrays import (
     require_finite,
     wrong_shape,
 )
-from delone._base.counting import agreed, counted
 from delone._base.extras import require
 from delone._base.georeference import crs_of, is_geographic
 from delone.constrained.geodata import no_geometry
-from delone.errors import DirectionError, DtypeError, InputError, ShapeError
+from delone.errors import DtypeError, InputError, ShapeError
 from delone.sphere.coordinates import BEYOND, directions_of, units_of
 from delone.sphere.flat import flat_polygon
 
@@ -39,7 +38,6 @@ __all__ = [
     "corners",
     "geometries",
     "merged_corners",
-    "require_nested",
     "rows",
     "shapes",
     "tangents_of",
@@ -309,52 +307,6 @@ def geometries(given: Any, *, degrees: bool, workers: int | None) -> Rings:
         np.concatenate(([0], np.cumsum(per_item))).astype(np.int64),
         np.asarray(holes, dtype=np.bool_),
     )
-
-
-def require_nested(arrays: tuple[Any, ...], workers: int | None) -> None:
-    """Reject cells with a hole that is not in the outer ring before it, or is in another hole.
-
-    Sides do not cross, so rings that share area are nested; the exact signs of the core decide.
-    """
-    _, _, cells, holes = arrays
-    inner = np.flatnonzero(holes)
-    if not len(inner):
-        return
-    owners = np.maximum.accumulate(np.where(holes, 0, np.arange(len(holes))))[inner]
-    outer, place = np.unique(owners, return_inverse=True)
-    threads = as_workers(workers)
-    sides = [_alone(arrays, chosen) for chosen in (outer, inner)]
-    usable = [made.check(False, threads).faults == 0 for made in sides]
-    # Rows are holes, and columns the outer rings that they share area with.
-    shared = sides[1].overlaps(sides[0], threads)
-    hole = np.repeat(np.arange(len(inner)), np.diff(shared.indptr))
-    inside = np.zeros(len(inner), dtype=np.bool_)
-    inside[hole[place[hole] == shared.indices]] = True
-    wrong = ~inside & usable[1] & usable[0][place]
-    # Holes in the same outer ring share nothing.
-    shared = sides[1].overlaps(sides[1], threads)
-    hole = np.repeat(np.arange(len(inner)), np.diff(shared.indptr))
-    twice = (hole != shared.indices) & (place[hole] == place[shared.indices])
-    wrong[hole[twice]] = True
-    if wrong.any():
-        found = np.unique(np.searchsorted(cells, inner[wrong], side="right") - 1)
-        subject = f"{counted(len(found), 'cell')} {agreed(len(found), 'has', 'have')}"
-        raise DirectionError(
-            f"{subject} a hole that is not inside its outer ring, or is inside another hole, first "
-            f"cell {found[0]}: shapely.make_valid repairs such polygons",
-            rows=found[:10].tolist(),
-            count=len(found),
-        )
-
-
-def _alone(arrays: tuple[Any, ...], chosen: Rows) -> Any:
-    """Return some of the rings as cells of the core, none of them a hole."""
-    vectors, starts, _, _ = arrays
-    counts = np.diff(starts)[chosen]
-    first = np.concatenate(([0], np.cumsum(counts))).astype(np.int64)
-    at = np.arange(first[-1]) + np.repeat(starts[chosen] - first[:-1], counts)
-    each = np.arange(len(chosen) + 1, dtype=np.int64)
-    return _core.CellGrid.polygons(vectors[at], first, each, np.zeros(len(chosen), dtype=np.bool_))
 
 
 def voronoi(diagram: Voronoi) -> tuple[Floats, Rows]:
