@@ -2,8 +2,9 @@
 
 Both make their cells from the same arrays of corners in the timed call, and use one thread. YAC is
 left out where it is not installed; it needs an MPI library, such as the package ``openmpi``. Areas
-in the plane are compared with ``geopandas.overlay``, if geopandas is installed. Memory is what
-grids, overlaps and weights need beyond what the process held, in a process of its own.
+in the plane are compared with ``geopandas.overlay``, and transferred columns with tobler, if these
+are installed. Memory is what grids, overlaps and weights need beyond what the process held, in a
+process of its own.
 ``python benchmarks/regrid.py --help`` has options.
 """
 
@@ -28,6 +29,8 @@ from delone import Overlaps, Voronoi, datasets, sphere
 # The second grid of most rows, in degrees.
 LON, LAT = np.arange(361.0), np.arange(-90.0, 91.0)
 NAMES = map("grid {}".format, itertools.count())
+# Widths of cells, in radians: from 290 km on the Earth to 3 cm.
+WIDTHS = 4.5e-2, 5e-4, 5e-5, 5e-6, 5e-8, 5e-9
 # Levels times months of a field.
 FIELDS = 47 * 12
 
@@ -35,10 +38,10 @@ FIELDS = 47 * 12
 class Cells:
     """Polygons by the places of their corners, as both programs take them."""
 
-    def __init__(self, vectors: Any, starts: Any) -> None:
+    def __init__(self, vectors: Any, starts: Any, digits: int = 12) -> None:
         # Corners that differ by rounding are one.
         _, first, self.corners = np.unique(
-            vectors.round(12), axis=0, return_index=True, return_inverse=True
+            vectors.round(digits), axis=0, return_index=True, return_inverse=True
         )
         self.corners, self.starts = self.corners.ravel(), starts
         self.places = vectors[first]
@@ -95,14 +98,36 @@ def voronoi(count: int, seed: int) -> Cells:
     return Cells(*made.rings[:2])
 
 
+def patch(width: float, share: float, seed: int) -> Cells:
+    """Voronoi cells of a mean width in a square, whose side is a share of 25 such widths."""
+    center, east, north = np.array([(0.48, 0.6, 0.64), (0.8, 0.0, -0.6), (-0.36, 0.8, -0.48)])
+    half = 12.5 * width * share
+    count = round((25 * share) ** 2)
+    x, y = np.random.default_rng(seed).uniform(-half, half, (2, count, 1))
+    sites = np.concatenate((center + x * east + y * north, directions(300, 9)))
+    vectors, starts, _ = sphere.Grid.from_voronoi(sphere.Voronoi(xyz=sites)).rings
+    # Without the cells at the edge, whose corners are far away.
+    flat = vectors / (vectors @ center)[:, None] - center
+    inside = (np.abs(flat).max(axis=1) < half) & (vectors @ center > 0)
+    whole = np.minimum.reduceat(inside, starts[:-1])
+    counts = np.diff(starts)
+    corners = vectors[np.repeat(whole, counts)]
+    return Cells(corners, np.append(0, np.cumsum(counts[whole])), digits=20)
+
+
 def ours(source: Any, target: Any, workers: int = 1) -> Any:
     """Weights of delone, from arrays."""
     grids = source.delone(workers), target.delone(workers)
     return sphere.Overlaps(*grids, workers=workers).to_weights("conservative")
 
 
-def theirs(yac: Any, source: Any, target: Any, sizes: tuple[int, int]) -> Any:
-    """Weights of YAC, from arrays; centers are not used, but must be there."""
+def theirs(
+    yac: Any, source: Any, target: Any, sizes: tuple[int, int], rest: float | None = None
+) -> Any:
+    """Weights of YAC, from arrays; centers are not used, but must be there.
+
+    Cells that are not covered get the value `rest`; by default, YAC leaves them as they are.
+    """
     place, fields = yac.yac_location.YAC_LOC_CELL, []
     for cells, count in zip((source, target), sizes, strict=True):
         grid = cells.yac(yac)
@@ -116,6 +141,8 @@ def theirs(yac: Any, source: Any, target: Any, sizes: tuple[int, int]) -> Any:
         partial_coverage=False,
         normalisation=yac.yac_interp_method_conserv_normalisation.YAC_INTERP_CONSERV_DESTAREA,
     )
+    if rest is not None:
+        stack.add_fixed(rest)
     return yac.compute_weights(stack, fields[0][1], fields[1][1])
 
 
@@ -141,6 +168,34 @@ def beside_yac(cases: dict[str, tuple[Any, Any]], runs: int) -> None:
             print(f", and by {off:.1e} of YAC", end="")
         print()
         table(title, calls, runs)
+
+
+def beside_yac_by_size() -> None:
+    """How far constants are from themselves, for cells of different sizes.
+
+    All cells of the target are covered. YAC leaves out those of which it finds less.
+    """
+    yac: Any = SimpleNamespace()
+    with contextlib.suppress(ImportError):
+        import yac.core as yac
+    print("\n| width of cells, radians | weights | cells | delone | YAC | not mapped by YAC |")
+    print("|---|---|---|---|---|---|")
+    for width in WIDTHS:
+        source, target = patch(width, 1.0, 1), patch(width, 0.6, 2)
+        weights = ours(source, target)
+        sizes = len(weights.source_areas), len(weights.target_areas)
+        ones = np.ones(sizes[0])
+        off = f"{abs(weights.apply(ones) - 1).max():.1e}"
+        other, left = "-", "-"
+        if hasattr(yac, "compute_weights"):
+            applied = theirs(yac, source, target, sizes, -1.0).get_interpolation(collection_size=1)
+            found = np.ravel(applied(ones[None]))
+            # No share of a field of ones is negative.
+            mapped = found[found >= 0]
+            other = f"{abs(mapped - 1).max():.1e}" if len(mapped) else "-"
+            left = f"{len(found) - len(mapped)}"
+        count = f"{len(weights.values):,} | {sizes[1]}"
+        print(f"| {width:g} | {count} | {off} | {other} | {left} |", flush=True)
 
 
 def hexagons(bounds: Any, side: float) -> Any:
@@ -188,6 +243,38 @@ def beside_overlay(runs: int) -> None:
             # About pieces that are lines and points.
             warnings.simplefilter("ignore", UserWarning)
             table(name, calls, runs)
+        if importlib.util.find_spec("tobler"):
+            beside_tobler(name, source, target, runs)
+
+
+def beside_tobler(name: str, source: Any, target: Any, runs: int) -> None:
+    """Amounts and means of polygons, transferred to hexagons."""
+    from tobler.area_weighted import area_interpolate
+
+    rng = np.random.default_rng(2)
+    data = source.assign(people=rng.integers(1, 1000, len(source)), income=rng.random(len(source)))
+    methods = {"people": "sum", "income": "normalized"}
+
+    def shared() -> Any:
+        return Overlaps(data, target, workers=1).transfer(data, methods)
+
+    def interpolated() -> Any:
+        return area_interpolate(
+            data, target, extensive_variables=["people"], intensive_variables=["income"],
+            allocate_total=False,
+        )  # fmt: skip
+
+    one, other = shared(), interpolated()
+    print()
+    for column in methods:
+        mine, its = np.asarray(one[column]), np.asarray(other[column])
+        covered = np.isfinite(mine)
+        off = (abs(its - mine)[covered] / mine[covered]).max()
+        rest = f"{(its[~covered] == 0).sum()} of {(~covered).sum()} uncovered cells are 0"
+        print(f"{column}: tobler differs by {off:.1e} of the value; {rest}")
+    lost = [abs(np.nansum(made["people"]) / data.people.sum() - 1) for made in (one, other)]
+    print("totals differ by {:.1e}, and by {:.1e} of tobler".format(*lost))
+    table(f"{name}, two columns", {"delone": shared, "tobler": interpolated}, runs)
 
 
 def application(nside: int, runs: int) -> None:
@@ -255,6 +342,7 @@ def main() -> None:
         ),
     }
     beside_yac(cases, options.runs)
+    beside_yac_by_size()
     if importlib.util.find_spec("geopandas"):
         beside_overlay(options.runs)
     application(options.nside, options.runs)
