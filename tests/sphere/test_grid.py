@@ -230,6 +230,12 @@ def test_merging_many_copies_and_their_neighbors() -> None:
             delone.DirectionError,
             "1 cell has a side that joins opposite directions, first cell 0",
         ),
+        # One row from pole to pole: lunes whose sides are not determined.
+        (
+            lambda: Grid.from_curvilinear(*np.meshgrid([0, 10, 20], [-90, 90])),
+            delone.DirectionError,
+            "2 cells have a side that joins opposite directions, first cell 0: add a corner",
+        ),
         (
             lambda: Grid.from_mesh(lonlat=[[(0, 0), (120, 0), (240, 0)]]),
             delone.DirectionError,

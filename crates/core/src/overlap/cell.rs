@@ -90,18 +90,21 @@ impl Prepared<3> for Cell {
             kept: OnceLock::new(),
         };
         let mut kept: Vec<(bool, Ring)> = Vec::new();
+        let mut opposite = false;
         for (hole, ring) in rings {
             let mut ring = cell.distinct(ring);
+            // Two opposite corners, such as the poles, may be meant as a lune: they are not an empty cell.
+            opposite |= ring.len() > 1 && has_opposite(&ring);
             if ring.len() > 2 {
                 start_at_smallest(&mut ring, |p, q| compare(&p.0, &q.0));
                 kept.push((hole, ring));
             }
         }
+        if opposite {
+            return (None, Some(Fault::Opposite));
+        }
         if kept.is_empty() {
             return (None, Some(Fault::Empty));
-        }
-        if kept.iter().any(|(_, ring)| has_opposite(ring)) {
-            return (None, Some(Fault::Opposite));
         }
         let Some(mut cap) = around(&kept) else {
             return (None, Some(Fault::Large));

@@ -211,11 +211,21 @@ fn faults_are_found() {
             [1.0, 1.0, 1.0],
             [1.0, -1.0, 1.0],
         ],
+        vec![
+            [0.0, 0.0, -1.0],
+            [0.0, 0.0, -2.0],
+            [0.0, 0.0, 1.0],
+            [0.0, 0.0, 1.0],
+        ],
     ];
     let flat = Flat::of(&cells);
     let known = check(&flat.grid(), true, 1, &Watch::idle()).expect("finite vectors");
+    assert_eq!(known.faults[5], Fault::Opposite as u8);
     let faults = [Fault::Empty, Fault::Opposite, Fault::Large, Fault::Crossing];
-    assert_eq!(known.faults, [&faults.map(|f| f as u8)[..], &[0]].concat());
+    assert_eq!(
+        known.faults[..5],
+        [&faults.map(|f| f as u8)[..], &[0]].concat()
+    );
 }
 
 #[test]
