@@ -145,3 +145,24 @@ def test_gaps_are_counted(tmp_path, command, options, gaps):
     line.write_text(json.dumps({"type": "LineString", "coordinates": [[0, 0.5], [6, 0.5]]}))
     code, out, _ = command("profile", survey, line, *options, "--json")
     assert code == 0 and json.loads(out)["gaps"] == gaps
+
+
+def test_a_polygon_and_an_empty_layer_instead_of_a_line(folder, figures, command):
+    ring = [(10, 5), (30, 5), (30, 35), (10, 35)]
+    geopandas.GeoSeries([shapely.Polygon(ring)]).to_file("pit.gpkg")
+    found = figures("profile", "the ground.csv", "pit.gpkg", "-o", "a.csv")
+    assert found["length"] == 100
+    assert "a polygon is the line around it" in " ".join(command("profile", "--help")[1].split())
+    with open("empty.geojson", "w", encoding="utf-8") as file:
+        json.dump({"type": "FeatureCollection", "features": []}, file)
+    contours = ("contours", "the ground.csv", "--interval", 5, "-o", "a.gpkg")
+    for call in (
+        ("profile", "the ground.csv", "empty.geojson"),
+        (*contours, "--boundary", "empty.geojson"),
+        ("terrain", "the ground.csv", "-o", "site", "--profile", "empty.geojson"),
+    ):
+        code, _, err = command(*call)
+        assert (code, err) == (3, "delone: empty.geojson contains no geometries\n")
+    for index, marked in ((0, 0), (1, 4)):
+        assert command(*contours, "--index", index)[0] == 0
+        assert geopandas.read_file("a.gpkg")["index"].sum() == marked

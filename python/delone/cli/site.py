@@ -108,7 +108,10 @@ def terrain(
     ] = False,
     profile: Annotated[
         list[Path] | None,
-        typer.Option(help="File with one line: profile-NAME.csv, with a picture; can be repeated."),
+        typer.Option(
+            help="File with one line; a polygon is the line around it: profile-NAME.csv, with a "
+            "picture; can be repeated."
+        ),
     ] = None,
     volume: Annotated[
         list[str] | None,

@@ -79,7 +79,9 @@ def contours(
     ] = None,
     index: Annotated[
         int | None,
-        typer.Option(help="Mark every n-th level as an index contour; by default every 5th."),
+        typer.Option(
+            help="Mark every n-th level as an index contour; by default every 5th; 0 marks none."
+        ),
     ] = None,
     smooth: Annotated[int, typer.Option(help="Number of corner-cutting rounds, 0 to 5.")] = 0,
     min_length: Annotated[
@@ -228,7 +230,10 @@ class _Drawn(NamedTuple):
 @with_surface
 def profile(
     source: Survey,
-    line: Annotated[Path, typer.Argument(metavar="LINE", help="File with one line.")],
+    line: Annotated[
+        Path,
+        typer.Argument(metavar="LINE", help="File with one line; a polygon is the line around it."),
+    ],
     *,
     other: Annotated[
         list[Path] | None,

@@ -185,7 +185,7 @@ def geometries_of(
     For attributes, None means all.
     """
     if not hasattr(frame, "geometry") or not len(frame):
-        raise without(source, "points")
+        raise without(source, "geometries")
     heights = None
     for name in _height(columns):
         heights = np.asarray(frame[_same(frame, name, source)], dtype=np.float64)

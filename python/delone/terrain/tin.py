@@ -417,7 +417,7 @@ class TIN(Sources, Surveyed, Measured, Earthworks, Detailed):
         base : float, optional
             The level from which multiples of `interval` are counted.
         index : int, optional
-            With an interval, every `index`-th multiple is marked as an index contour.
+            With an interval, every `index`-th multiple is marked as an index contour; 0 marks none.
         smooth : int, optional
             Number of corner-cutting rounds, at most 5; 0 keeps contours straight in each triangle.
             Smoothed lines do not cross: where they would, corners are kept.
