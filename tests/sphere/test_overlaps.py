@@ -308,6 +308,41 @@ def test_full_turns_whose_last_meridian_is_rounded(step: float, shift: float) ->
     assert shifted.areas.sum() == pytest.approx(4 * np.pi, rel=1e-13)
 
 
+@pytest.mark.parametrize("beyond", [0.0, 1e-16, -1e-16, 3e-17])
+@pytest.mark.parametrize("count", [3, 4, 7])
+def test_the_pairs_of_a_turn_whose_last_meridian_is_beyond_the_first(
+    count: int, beyond: float
+) -> None:
+    """Grids end where they start; the core is given a meridian that does not."""
+    angle = np.linspace(0, 2 * np.pi, count + 1)[:-1]
+    meridians = np.column_stack((np.cos(angle), np.sin(angle)))
+    numbers = np.append(np.arange(count), -1).astype(np.int32)
+
+    def band(last: float) -> Any:
+        turn = np.concatenate((meridians, [(1.0, last)]))
+        starts = np.array([0, count + 1])
+        return _core.CellGrid.rows(np.array([[-1.0, 1.0]]), starts, turn, numbers, count)
+
+    other = Grid.from_lonlat(np.arange(0, 361, 45.0), [-45, 0, 45])._made
+    given, right = band(beyond), band(0.0)
+    for shared, expected in (
+        (given.overlaps(other, 1), right.overlaps(other, 1)),
+        (other.overlaps(given, 1), other.overlaps(right, 1)),
+    ):
+        assert shared.indptr.tolist() == expected.indptr.tolist()
+        assert np.allclose(shared.areas, expected.areas, rtol=1e-14, atol=0)
+
+
+@pytest.mark.parametrize("lon", [[0, 90, 180, 270, 360], [0, 0.001, 30, 360], [0, 1e-6, 1e-5, 360]])
+def test_cells_from_pole_to_pole(lon: list[float]) -> None:
+    for lunes in (Grid.from_lonlat(lon, [-90, 90]), Grid.from_lonlat(lon, [-89.9999, 89.9999])):
+        for other in (Grid.from_healpix(4), degrees(10), Grid.from_mesh(cubed(3))):
+            shared = Overlaps(other, lunes)
+            assert np.allclose(shared.covered_target, 1, rtol=1e-14)
+            assert shared.covered_source.max() < 1 + 1e-14
+            assert shared.areas.sum() == pytest.approx(lunes.areas.sum(), rel=1e-14)
+
+
 @pytest.mark.parametrize("diagram", [None, 3, delone.Voronoi([(0, 0), (1, 0), (0, 1)])])
 def test_cells_of_other_things_than_diagrams(diagram: Any) -> None:
     with pytest.raises(DtypeError, match=r"delone\.sphere\.Voronoi"):
