@@ -4,12 +4,9 @@ use super::cell::{INFINITE, Mesh};
 use super::filter::{Test, barycentric, invert, minus};
 use super::fine::Fine;
 use super::frame::Frame;
-use super::residues::is_zero;
+use super::residues::{FEW_BITS, is_zero};
+use super::simplex::fine_barycentric;
 use crate::base::error::{Error, Result};
-
-/// Differences of at most this many bits go to integers at once: they are machine integers, and
-/// faster than residues.
-pub const FEW_BITS: u32 = 24;
 
 impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     /// Whether a point is in conflict with a cell.
@@ -185,20 +182,28 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
             let a = self.differences(&v);
             let at = |u: u32| &self.sites.scaled[u as usize];
             let d = minus(at(p), at(v[0]));
-            let (l, bound) = barycentric::<D, V, P>(&invert(&a), &d);
+            let inverse = invert(&a);
+            let (l, bound) = barycentric::<D, V, P>(&inverse, &d);
             if l[i].abs() > bound {
                 return Ok(sign(l[i]));
             }
-            // The determinant with the point in place of the corner is that of the corners times the
-            // coordinate, which is at most twice the bound.
-            if self.sites.bits > FEW_BITS && bound.is_finite() {
-                let log = self.sites.log_determinant(&v) + (2.0 * bound).log2();
-                let mut with = v;
-                with[i] = p;
-                let points = self.sites.integers(with.into_iter());
-                if is_zero(&points, false, ceil(log) - D as i64 * self.sites.unit).is_some() {
-                    self.counts.zeros += 1;
-                    return Ok(0);
+            if self.sites.bits > FEW_BITS {
+                let (l, bound) = fine_barycentric(&v.map(at), at(p), &inverse);
+                if l[i].abs() > bound {
+                    self.counts.fine += 1;
+                    return Ok(sign(l[i]));
+                }
+                // The determinant with the point in place of the corner is that of the corners times
+                // the coordinate, which is at most twice the bound.
+                if bound.is_finite() {
+                    let log = self.sites.log_determinant(&v) + (2.0 * bound).log2();
+                    let mut with = v;
+                    with[i] = p;
+                    let points = self.sites.integers(with.into_iter());
+                    if is_zero(&points, false, ceil(log) - D as i64 * self.sites.unit).is_some() {
+                        self.counts.zeros += 1;
+                        return Ok(0);
+                    }
                 }
             }
         }

@@ -8,10 +8,14 @@
 //! nine terms below 2^(2 bits), also in a flat, where the squares of the coordinates that are not axes are
 //! weights. Expanded along b, a minor is below 9 D (D - 1)^((D - 1) / 2) 2^((D + 1) bits). Both are below
 //! 2^[`minor_bits`], which has `bits` to spare, at least two.
+//!
+//! Where these are not machine integers but differences are, `limbs` does the same on the stack.
 
 use std::ops::{Div, Mul, Sub};
 
 use num_bigint::BigInt;
+
+use super::limbs::{self, Eliminated, Limbs};
 
 /// Points as integers of one unit.
 pub trait Integers {
@@ -52,6 +56,7 @@ pub struct Frame {
 
 enum Numbers {
     Small(Solved<i128>),
+    Limbs(Limbs),
     Wide(Solved<BigInt>),
 }
 
@@ -89,20 +94,24 @@ impl Frame {
             let at = |i: usize, k: usize| small(i, k).unwrap_or(0).into();
             Numbers::Small(eliminate::<i128>(d, at, weight)?)
         } else {
-            let solved = eliminate::<BigInt>(
-                d,
-                |i, k| sites.wide(corners[i + 1], corners[0], k),
-                |i| sites.wide_weight(corners[i + 1], corners[0]),
-            )?;
-            // Scalar products have terms of the size of minors, and twice D of them.
-            if sites.is_small() && minor + sites.bits() + 4 < 126 {
-                Numbers::Small(solved.map(|x| i128::try_from(x).unwrap_or(0)))
-            } else {
-                Numbers::Wide(solved)
+            let few = sites.is_small() && d <= limbs::MOST;
+            let solved = few.then(|| {
+                let at = |i: usize, k: usize| small(i, k).unwrap_or(0);
+                limbs::eliminate(d, sites.bits(), at, weight)
+            });
+            match solved {
+                Some(Eliminated::Flat) => return None,
+                Some(Eliminated::Done(solved)) => Numbers::Limbs(solved),
+                Some(Eliminated::TooLong) | None => Numbers::Wide(eliminate::<BigInt>(
+                    d,
+                    |i, k| sites.wide(corners[i + 1], corners[0], k),
+                    |i| sites.wide_weight(corners[i + 1], corners[0]),
+                )?),
             }
         };
         let positive = match &numbers {
             Numbers::Small(solved) => solved.positive,
+            Numbers::Limbs(solved) => solved.positive,
             Numbers::Wide(solved) => solved.positive,
         };
         Some(Self {
@@ -116,6 +125,7 @@ impl Frame {
     pub fn determinant(&self) -> BigInt {
         match &self.numbers {
             Numbers::Small(s) => s.determinant.into(),
+            Numbers::Limbs(s) => s.determinant(),
             Numbers::Wide(s) => s.determinant.clone(),
         }
     }
@@ -124,6 +134,7 @@ impl Frame {
     pub fn lifted(&self, k: usize) -> BigInt {
         match &self.numbers {
             Numbers::Small(s) => s.lifted[k].into(),
+            Numbers::Limbs(s) => s.lifted(k),
             Numbers::Wide(s) => s.lifted[k].clone(),
         }
     }
@@ -132,6 +143,7 @@ impl Frame {
     pub fn adjoint(&self, k: usize, i: usize) -> BigInt {
         match &self.numbers {
             Numbers::Small(s) => s.adjoint[k * self.dimension + i].into(),
+            Numbers::Limbs(s) => s.adjoint(k, i),
             Numbers::Wide(s) => s.adjoint[k * self.dimension + i].clone(),
         }
     }
@@ -165,6 +177,10 @@ impl Frame {
                 }
                 sum.signum() as i32
             }
+            Numbers::Limbs(s) => s.power(
+                |k| sites.small(p, o, k).unwrap_or(0),
+                sites.small_weight(p, o),
+            ),
             Numbers::Wide(s) => {
                 let mut sum = -&s.determinant * sites.wide_weight(p, o);
                 for k in 0..self.dimension {
@@ -192,6 +208,7 @@ impl Frame {
                 let value = if i == 0 { s.determinant - sum } else { sum };
                 value.signum() as i32
             }
+            Numbers::Limbs(s) => s.coordinate(i, |k| sites.small(p, o, k).unwrap_or(0)),
             Numbers::Wide(s) => {
                 let mut sum = BigInt::ZERO;
                 for k in 0..self.dimension {
@@ -274,4 +291,141 @@ where
             .collect(),
         positive: positive ^ negative,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::sets::Random;
+    use super::*;
+
+    /// Points with weights, as machine integers or not.
+    #[derive(Clone)]
+    struct Given {
+        points: Vec<Vec<i64>>,
+        weights: Vec<i128>,
+        bits: u32,
+        small: bool,
+    }
+
+    impl Integers for Given {
+        fn dimension(&self) -> usize {
+            self.points[0].len()
+        }
+
+        fn bits(&self) -> u32 {
+            self.bits
+        }
+
+        fn small(&self, p: u32, o: u32, k: usize) -> Option<i64> {
+            let at = |q: u32| self.points[q as usize][k];
+            self.small.then(|| at(p) - at(o))
+        }
+
+        fn wide(&self, p: u32, o: u32, k: usize) -> BigInt {
+            let at = |q: u32| BigInt::from(self.points[q as usize][k]);
+            at(p) - at(o)
+        }
+
+        fn is_small(&self) -> bool {
+            self.small
+        }
+
+        fn small_weight(&self, p: u32, o: u32) -> i128 {
+            self.weights[p as usize] - self.weights[o as usize]
+        }
+
+        fn wide_weight(&self, p: u32, o: u32) -> BigInt {
+            self.small_weight(p, o).into()
+        }
+    }
+
+    /// A simplex and two points, whose differences are below 2^bits.
+    fn drawn(r: &mut Random, d: usize, bits: u32, kind: usize) -> Given {
+        let half = (1i64 << (bits - 1)) - 1;
+        let mut coordinate = |i: usize| {
+            let sign = r.integer(0, 1) as i64 * 2 - 1;
+            match kind {
+                // Corners of the largest cube; scattered; with zeros at the end; nearly in a lattice.
+                0 => sign * half,
+                1 => sign * (r.unit() * half as f64) as i64,
+                2 => (r.integer(-1, 1) as i64) << (bits - 2),
+                3 if i == 0 => half,
+                3 => (r.integer(-3, 3) as i64 * half) / 3 - r.integer(0, 1) as i64 * sign,
+                _ => r.integer(-1, 1) as i64,
+            }
+        };
+        let points: Vec<Vec<i64>> = (0..d + 3)
+            .map(|i| (0..d).map(|_| coordinate(i).clamp(-half, half)).collect())
+            .collect();
+        let most = (1i128 << (2 * bits - 1)) - 1;
+        let weights = (0..d + 3).map(|i| match (kind + i) % 3 {
+            0 => most,
+            1 => -most,
+            _ => (r.unit() * 1e9) as i128 & most,
+        });
+        Given {
+            weights: weights.collect(),
+            points,
+            bits,
+            small: true,
+        }
+    }
+
+    /// Integers of some limbs, and those of any length, give the same numbers and signs.
+    #[test]
+    fn limbs_are_as_good_as_integers_of_any_length() {
+        let mut r = Random::new(4);
+        let (mut flat, mut few, mut long, mut zeros) = (0, 0, 0, 0);
+        for (d, bits, kind) in (2..=8).flat_map(|d| {
+            [3, 9, 13, 24, 31, 40, 57, 61]
+                .into_iter()
+                .flat_map(move |bits| (0..15).map(move |kind| (d, bits, kind % 5)))
+        }) {
+            let given = drawn(&mut r, d, bits, kind);
+            let corners: Vec<u32> = (0..=d as u32).collect();
+            let made = Frame::new(&given, &corners);
+            let mut wide = given.clone();
+            wide.small = false;
+            let expected = Frame::new(&wide, &corners);
+            let (Some(made), Some(expected)) = (&made, &expected) else {
+                assert!(made.is_none() && expected.is_none(), "{:?}", given.points);
+                flat += 1;
+                continue;
+            };
+            match made.numbers {
+                Numbers::Limbs(_) => few += 1,
+                Numbers::Wide(_) => long += 1,
+                Numbers::Small(_) => {}
+            }
+            assert_eq!(made.positive, expected.positive);
+            assert_eq!(made.determinant(), expected.determinant());
+            assert!(made.determinant() > BigInt::ZERO);
+            for k in 0..d {
+                assert_eq!(made.lifted(k), expected.lifted(k), "{d}-D {bits} {kind}");
+                for i in 0..d {
+                    assert_eq!(
+                        made.adjoint(k, i),
+                        expected.adjoint(k, i),
+                        "{d}-D {bits} {kind}"
+                    );
+                }
+            }
+            for p in 0..d as u32 + 3 {
+                let sign = expected.power(&wide, 0, p);
+                assert_eq!(made.power(&given, 0, p), sign, "{d}-D {bits} {kind}");
+                for i in 0..=d {
+                    let side = expected.coordinate(&wide, 0, i, p);
+                    assert_eq!(
+                        made.coordinate(&given, 0, i, p),
+                        side,
+                        "{d}-D {bits} {kind}"
+                    );
+                    zeros += usize::from(side == 0);
+                }
+            }
+        }
+        for count in [flat, few, long, zeros] {
+            assert!(count > 10, "{flat} {few} {long} {zeros}");
+        }
+    }
 }

@@ -24,9 +24,9 @@
 //! | stage | file | decides |
 //! |---|---|---|
 //! | rounded, with a bound proven afterward | `filter` | nearly everything |
-//! | double-double, with the same proof | `fine` | points near a sphere |
+//! | double-double, with the same proof | `fine`, `simplex` | points near a sphere or a plane |
 //! | residues modulo primes | `residues` | that a value is zero |
-//! | integers | `frame` | the rest |
+//! | integers | `frame`, `limbs` | the rest |
 //!
 //! Cavities with ghosts in any dimension: J.-D. Boissonnat, O. Devillers, S. Hornus, "Incremental
 //! construction of the Delaunay triangulation and the Delaunay graph in medium dimension" (2009).
@@ -47,6 +47,7 @@ mod frame;
 pub mod halfspaces;
 mod hull;
 mod lazy;
+mod limbs;
 mod location;
 mod measure;
 mod order;

@@ -12,6 +12,10 @@ const BITS: u32 = 61;
 /// The most primes that are tried: integers are faster than more.
 const MOST: usize = 40;
 
+/// Differences of at most this many bits go to integers at once: they are machine integers, and
+/// faster than residues.
+pub const FEW_BITS: u32 = 24;
+
 /// The most rows of a determinant: those of a simplex in 8-D and a point.
 pub const ROWS: usize = 9;
 

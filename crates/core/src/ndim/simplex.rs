@@ -8,11 +8,10 @@ use delone_predicates::Sign;
 use delone_predicates::arithmetic::Pair;
 use num_bigint::BigInt;
 
-use super::decide::FEW_BITS;
 use super::filter::{Inverse, LEAST_RESIDUAL, Matrix, ROUNDED, U, barycentric, dot, invert};
 use super::fine::{Fine, differences};
 use super::frame::Frame;
-use super::residues::is_zero;
+use super::residues::{FEW_BITS, is_zero};
 use super::sites::Sites;
 use crate::base::wide::{ratio, scaled};
 
@@ -138,10 +137,22 @@ fn refined<const D: usize, const V: usize, const P: usize>(
     if !safe {
         return None;
     }
-    let o = padded::<D, P>(&corners[0]);
-    let a: [[Pair; D]; D] = std::array::from_fn(|i| differences(&padded(&corners[i + 1]), &o));
-    let d: [Pair; D] = differences(&padded::<D, P>(q), &o);
-    let (l, error) = solved(&a, &d, &invert(&rounded));
+    let corners = corners.each_ref().map(padded::<D, P>);
+    let inverse = invert(&rounded);
+    let (found, bound) = fine_barycentric(&corners.each_ref(), &padded(q), &inverse);
+    bound.is_finite().then_some((found, bound))
+}
+
+/// The same from an approximate inverse of the differences, for coordinates that the filters take; the
+/// bound is infinite if it is unknown.
+pub fn fine_barycentric<const D: usize, const V: usize, const P: usize>(
+    corners: &[&[f64; P]; V],
+    q: &[f64; P],
+    inverse: &Inverse<D, P>,
+) -> ([f64; V], f64) {
+    let a: [[Pair; D]; D] = std::array::from_fn(|i| differences(corners[i + 1], corners[0]));
+    let d: [Pair; D] = differences(q, corners[0]);
+    let (l, error) = solved(&a, &d, inverse);
     let mut rest = Pair::from_double(1.0);
     let mut size = 1.0;
     for x in l {
@@ -149,8 +160,9 @@ fn refined<const D: usize, const V: usize, const P: usize>(
         size += x.hi.abs();
     }
     let bound = ROUNDED * (D as f64 * error + (4 * D + 8) as f64 * U * U * size);
-    let found: [f64; V] = std::array::from_fn(|i| if i == 0 { rest.hi } else { l[i - 1].hi });
-    bound.is_finite().then_some((found, bound))
+    let found = std::array::from_fn(|i| if i == 0 { rest.hi } else { l[i - 1].hi });
+    let finite = bound.is_finite();
+    (found, if finite { bound } else { f64::INFINITY })
 }
 
 /// The solution l of l A = d, refined, and a bound of its error, by the proof of `filter`: at most

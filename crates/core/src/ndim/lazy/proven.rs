@@ -7,9 +7,9 @@
 use delone_predicates::arithmetic::Pair;
 use num_bigint::BigInt;
 
-use super::super::decide::FEW_BITS;
 use super::super::filter::{LEAST_RESIDUAL, LEAST_VALUE, ROUNDED, U};
 use super::super::frame::{Frame, Integers};
+use super::super::residues::FEW_BITS;
 use super::sites::Around;
 use crate::base::error::{Error, Result};
 use crate::base::memory::{copied, filled, with_room};

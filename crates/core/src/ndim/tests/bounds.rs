@@ -9,6 +9,7 @@ use super::super::cell::Mesh;
 use super::super::filter::{Test, U, barycentric, invert, minus};
 use super::super::fine::Fine;
 use super::super::frame::Integers;
+use super::super::simplex::fine_barycentric;
 use super::super::sites::{MOST, Sites};
 use super::sets::Random;
 use crate::base::wide::scaled;
@@ -75,7 +76,7 @@ fn power(
     Some(height - x.iter().zip(d).map(|(x, d)| x * d).sum::<BigRational>())
 }
 
-/// A simplex inside the unit cube, and a point: scattered, far away, thin, near a sphere.
+/// A simplex inside the unit cube, and a point: scattered, far away, thin, near a sphere, near a facet.
 fn drawn<const D: usize, const V: usize, const P: usize>(
     r: &mut Random,
     kind: u64,
@@ -83,7 +84,7 @@ fn drawn<const D: usize, const V: usize, const P: usize>(
     let mut draw = || -> [f64; P] { std::array::from_fn(|k| if k < D { r.unit() } else { 0.0 }) };
     let mut v: [[f64; P]; V] = std::array::from_fn(|_| draw());
     let mut p = draw();
-    match kind % 4 {
+    match kind % 5 {
         1 => {
             let near = |q: &[f64; P]| q.map(|x| if x == 0.0 { 0.0 } else { 0.5 + x * 1e-6 });
             v = std::array::from_fn(|i| near(&v[i]));
@@ -107,6 +108,11 @@ fn drawn<const D: usize, const V: usize, const P: usize>(
             v = std::array::from_fn(|i| on(&v[i]));
             p = on(&p);
         }
+        4 => {
+            for k in 0..D {
+                p[k] = v[..D].iter().map(|q| q[k]).sum::<f64>() / D as f64;
+            }
+        }
         _ => {}
     }
     (v, p)
@@ -118,9 +124,9 @@ fn gap(value: f64, truth: &BigRational) -> f64 {
 }
 
 /// Checks all bounds; returns the largest parts of them that errors have used.
-fn check<const D: usize, const V: usize, const P: usize>() -> [f64; 4] {
+fn check<const D: usize, const V: usize, const P: usize>() -> [f64; 5] {
     let mut r = Random::new(17 + D as u64);
-    let mut used = [0.0f64; 4];
+    let mut used = [0.0f64; 5];
     for kind in 0..240 {
         let (v, p) = drawn::<D, V, P>(&mut r, kind);
         let Some((power, l)) = truth::<D, V, P>(&v, &p) else {
@@ -148,6 +154,10 @@ fn check<const D: usize, const V: usize, const P: usize>() -> [f64; 4] {
         let corners: [&[f64; P]; V] = std::array::from_fn(|i| &v[i]);
         let (value, bound) = Fine::<D>::new(&corners).power(&p, &v[0], Pair::from_double(0.0));
         note(3, value, bound, &power);
+        // The last one is very small near a facet: heads of pairs are then as good as these.
+        let (weights, bound) = fine_barycentric::<D, V, P>(&corners, &p, &invert(&a));
+        let head = if kind % 5 == 4 { 0.0 } else { U };
+        note(4, weights[D], bound + head * weights[D].abs(), &l[D - 1]);
     }
     used
 }
