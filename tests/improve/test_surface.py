@@ -245,3 +245,112 @@ def test_volumes_of_removed_tetrahedra_add_up() -> None:
     area = float(np.sqrt((normals**2).sum(axis=1)).sum() / 2)
     lost = volume(points, given.simplices) - volume(mesh.points, mesh.simplices)
     assert 0 < lost <= Fraction(0.05 * area) * 6
+
+
+def umbrellas(faces: np.ndarray) -> bool:
+    """Whether each edge has two faces, and the faces around each vertex form one cycle."""
+    around: dict[int, dict[int, int]] = {}
+    for a, b, c in faces.tolist():
+        for u, v, w in ((a, b, c), (b, c, a), (c, a, b)):
+            ahead = around.setdefault(u, {})
+            if v in ahead:
+                return False
+            ahead[v] = w
+    for ahead in around.values():
+        met, here = set(), next(iter(ahead))
+        while here in ahead and here not in met:
+            met.add(here)
+            here = ahead[here]
+        if len(met) < len(ahead):
+            return False
+    return True
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_thin_plates_stay_whole(seed: int) -> None:
+    """Everything is within the tolerance: only what would pinch the boundary remains."""
+    points = np.random.default_rng(seed).random((120, 3)) * (1, 1, 0.04)
+    given = delone.Delaunay(points)
+    mesh = delone.improve(given, boundary="surface", tolerance=0.5)
+    assert mesh.report.tetrahedra_removed > 20
+    assert mesh.validate()
+    assert umbrellas(mesh.boundary)
+    v, f = len(np.unique(mesh.boundary)), len(mesh.boundary)
+    assert v - f / 2 == 2
+    assert set(np.unique(mesh.simplices)) == set(range(len(points)))
+
+
+def oriented(points: np.ndarray, simplices: list[tuple[int, ...]]) -> np.ndarray:
+    """Tetrahedra with two corners swapped where that makes them positive."""
+    made = np.array(simplices)
+    a, b, c, d = (points[made[:, k]] for k in range(4))
+    negative = (np.cross(b - a, c - a) * (d - a)).sum(axis=1) < 0
+    made[negative] = made[negative][:, [1, 0, 2, 3]]
+    return made
+
+
+def test_the_front_of_a_slit_stays_straight() -> None:
+    """All walls at its middle vertex are in one plane, but on one side of the front."""
+    points = np.array([(0, -1, 0), (0, 0.2, 0), (0, 1, 0), (2, 0.1, 0), (2, -0.1, 0), (1, 0, 1.5),
+                       (-1.5, 0, 0.6), (-1.5, 0, -0.6), (1, 0, -1.5)])  # fmt: skip
+    # Around the front, from the upper side of the slit to the lower one.
+    ring = [3, 5, 6, 7, 8, 4]
+    both = [(x, y, end, 1) for x, y in itertools.pairwise(ring) for end in (0, 2)]
+    mesh = delone.improve((points, oriented(points, both)), boundary="surface", min_angle=60)
+    assert mesh.report.boundary_moves > 0
+    assert mesh.points[1, 0] == mesh.points[1, 2] == 0
+    assert mesh.validate()
+
+
+def test_bodies_that_touch_with_other_diagonals_keep_one() -> None:
+    points = np.array([(0.1, -0.1, 0), (0.7, -0.3, 0), (1.2, 1.2, 0), (0.1, 1.1, 0),
+                       (0.6, 1.4, 0.9), (-0.5, 1.2, -0.2)])  # fmt: skip
+    both = [(0, 1, 2, 4), (0, 2, 3, 4), (0, 1, 3, 5), (1, 2, 3, 5)]
+    given = points, oriented(points, both)
+    mesh = delone.improve(given, boundary="surface", min_angle=60, smooth=False)
+    assert mesh.validate()
+    # Each body alone gets the better diagonal.
+    alone = [
+        delone.improve(
+            (points, given[1][k : k + 2]), boundary="surface", min_angle=60, smooth=False
+        )
+        for k in (0, 2)
+    ]
+    assert sum(one.report.boundary_flips for one in alone) == 1
+
+
+@pytest.mark.parametrize("second", [(0, 1, 2, 4), (0, 1, 2, 3)])
+def test_tetrahedra_on_one_side_of_a_face_are_refused(second: tuple[int, ...]) -> None:
+    points = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0.1, 0.1, 2), (9, 9, 9)])
+    # The rows of the input are named, not the order of the coordinates.
+    points = points[::-1].copy()
+    simplices = 5 - oriented(points[::-1], [(0, 1, 2, 3), second])
+    with pytest.raises(InputError, match=r"on the same side of the face of rows (5|4|3|2), "):
+        delone.improve((points, simplices))
+
+
+def test_the_limit_on_passes_does_not_stop_removals() -> None:
+    points = np.random.default_rng(3).random((250, 3))
+    options = {"boundary": "surface", "tolerance": 0.1}
+    removed = [
+        delone.improve(delone.Delaunay(points), max_iter=k, **options).report.tetrahedra_removed
+        for k in (0, 1)
+    ]
+    assert all(removed)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_both_sides_of_an_interface_stay_positive(seed: int) -> None:
+    """A vertex on it moves as far as the tetrahedra of both regions allow."""
+    rng = np.random.default_rng(seed)
+    points = box(120, 60, seed)
+    points = np.concatenate((points, LOW + (HIGH - LOW) * rng.random((40, 3))))
+    points[-40:, 0] = 0
+    triangulation = delone.Delaunay(points)
+    x = points[triangulation.simplices][:, :, 0]
+    left, right = (x <= 0).all(axis=1), (x >= 0).all(axis=1)
+    simplices, region = triangulation.simplices[left | right], right[left | right].astype(int)
+    mesh = delone.improve((points, simplices), region=region, boundary="surface", min_angle=40)
+    assert (mesh.points[-40:] != points[-40:]).any()
+    assert mesh.validate()
+    assert mesh.report.smallest_after >= mesh.report.smallest_before

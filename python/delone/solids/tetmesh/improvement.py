@@ -71,7 +71,7 @@ def improve(
     flips : bool, optional
         Whether to remove edges and faces (flips).
     smooth : bool, optional
-        Whether to move interior vertices.
+        Whether to move interior vertices, and those that `boundary` lets move.
     exude : bool, optional
         Whether to start with sliver exudation: interior vertices get weights for which the
         tetrahedra around them in the regular triangulation are better.
@@ -83,7 +83,8 @@ def improve(
     tolerance : float, optional
         With ``boundary="surface"``, tetrahedra at the boundary that stay below the goal are removed
         if the boundary remains within this distance of where it was, in the unit of the points.
-        The report has the number of such tetrahedra and a bound on the distance. By default 0:
+        The report has the number of such tetrahedra and a bound on the distance. They are also
+        removed when `max_iter` is reached. By default 0:
         the mesh fills exactly the same space.
     region : array_like of int, shape (m,), optional
         A number for each tetrahedron. Faces between different numbers are preserved like the
@@ -114,7 +115,7 @@ def improve(
     Raises
     ------
     InputError
-        A tetrahedron is flat or negatively oriented; three tetrahedra share a face; tetrahedra
+        A tetrahedron is flat or negatively oriented; two are on one side of a face; tetrahedra
         overlap at an interior vertex; two used rows have the same coordinates; or an argument is
         invalid.
     ShapeError, DtypeError, NonFiniteError

@@ -103,7 +103,7 @@ class ImproveReport(ReadOnly):
     edge_removals, boundary_flips, face_removals, moves, boundary_moves : int
         Numbers of removals of interior edges (3-2, 4-4 and so on), of boundary edges (2-2 and so
         on), of the faces between two vertices (2-3 and so on), of moves of vertices, and of those
-        on the boundary among them.
+        on the boundary or between regions among them.
     tetrahedra_removed : int
         Number of tetrahedra that were removed at the boundary, within the tolerance.
     surface_distance : float

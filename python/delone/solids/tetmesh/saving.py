@@ -21,10 +21,10 @@ __all__ = ["of_report", "recovery_of", "report_of"]
 _ANGLES = ("min_angle", "smallest_before", "smallest_after", "largest_before", "largest_after")
 _HISTOGRAMS = ("bounds", "before", "after", "weights", "below", "wall_edges")
 _NO_COUNTS = np.empty(0, dtype=np.int64)
-_NO_ANGLES = np.empty(0)
+_NO_NUMBERS = np.empty(0)
 # What a file contains for a missing report.
 _UNIMPROVED: dict[str, NDArray[Any]] = {
-    **dict.fromkeys(("angles", "surface_distance", "bounds", "weights"), _NO_ANGLES),
+    **dict.fromkeys(("angles", "surface_distance", "bounds", "weights"), _NO_NUMBERS),
     **dict.fromkeys(("counts", "before", "after", "below", "cause"), _NO_COUNTS),
     "wall_edges": np.empty((0, 2), dtype=np.int64),
 }
@@ -34,11 +34,11 @@ _UNRECOVERED: dict[str, NDArray[Any]] = {
     "duplicate_points": np.empty((0, 2), dtype=np.int64),
     "recut": np.empty((0, 3), dtype=np.int64),
     "recut_source": np.empty((0, 2), dtype=np.int64),
-    "imprint_distance": _NO_ANGLES,
+    "imprint_distance": _NO_NUMBERS,
 }
 _UNREFINED: dict[str, NDArray[Any]] = {
     "refinement": _NO_COUNTS,
-    "refinement_bounds": _NO_ANGLES,
+    "refinement_bounds": _NO_NUMBERS,
     "too_large": _NO_COUNTS,
     "above_ratio": _NO_COUNTS,
 }

@@ -14,6 +14,7 @@
 //! meshes" (2002). It takes O(m^3) measurements for a ring of m vertices.
 
 use super::measure::quality;
+use super::slide::continues;
 use super::store::{Corners, NONE, Store};
 
 /// The longest ring that is tried; the chance of success falls quickly beyond 7 vertices.
@@ -151,10 +152,9 @@ pub fn remove(
     })
 }
 
-/// Whether an edge of two boundary walls lies in one plane with them, and they form a convex
-/// quadrilateral.
+/// Whether an edge of two boundary walls lies in one plane with them, between them, and the walls that would
+/// replace them are not on the boundary already, where parts of it touch.
 fn turns(store: &Store, ring: &Ring, a: u32, b: u32) -> bool {
-    use delone_predicates::{Sign, orient3d};
     let (Some(&first), Some(&last)) = (ring.vertices.first(), ring.vertices.last()) else {
         return false;
     };
@@ -169,8 +169,20 @@ fn turns(store: &Store, ring: &Ring, a: u32, b: u32) -> bool {
     }
     // Tetrahedra on both sides of the new edge are tested for positivity later, which implies
     // convexity; here only the plane is tested.
-    let p = [a, b, first, last].map(|v| store.points[v as usize]);
-    orient3d(p[0], p[1], p[2], p[3]) == Sign::Zero
+    let [p, q, r, s] = [a, b, first, last].map(|v| store.points[v as usize]);
+    if !continues([p, q], [r, s]) {
+        return false;
+    }
+    let pinched = |v: u32| store.pinched[v as usize];
+    let apart = pinched(first) && pinched(last) && (pinched(a) || pinched(b));
+    let mut around = Vec::new();
+    let known = store.whole_star(first, &mut around).is_ok();
+    let has = |t: &u32, end: u32| {
+        let corners = store.corners[*t as usize];
+        corners.contains(&last) && corners.contains(&end) && !ring.tetrahedra.contains(t)
+    };
+    let twice = |end: u32| around.iter().any(|t| has(t, end));
+    known && !apart && !twice(a) && !twice(b)
 }
 
 /// The triangulation of a polygon whose worst triangle is best, if that is better than `above`.

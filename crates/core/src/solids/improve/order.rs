@@ -91,7 +91,7 @@ pub fn import(task: Task) -> Result<Imported> {
     let mut label = with_room(order.len())?;
     corners.extend(order.iter().map(|(v, _)| *v));
     label.extend(order.iter().map(|(_, l)| *l));
-    let mut store = Store::new(points, corners, label)?;
+    let mut store = Store::new(points, corners, label, &rows)?;
     for (fixed, &row) in store.fixed.iter_mut().zip(&rows) {
         *fixed |= task.fixed.get(row as usize).copied().unwrap_or(false);
     }
@@ -115,13 +115,14 @@ fn whole_stars(store: &mut Store, task: Task, rows: &[u32]) -> Result<()> {
             )));
         }
     }
-    if task.turn && task.smooth {
+    if task.turn {
         for v in (0..store.points.len() as u32).filter(|&v| store.rim[v as usize]) {
             let row = rows[v as usize] as usize;
-            if !task.fixed.get(row).copied().unwrap_or(false) {
-                store.whole_star(v, &mut star)?;
-                store.slides[v as usize] = star.len() as u32 == degree[v as usize];
-            }
+            let held = task.fixed.get(row).copied().unwrap_or(false);
+            store.whole_star(v, &mut star)?;
+            let whole = star.len() as u32 == degree[v as usize];
+            store.pinched[v as usize] = !whole;
+            store.slides[v as usize] = whole && !held;
         }
     }
     Ok(())

@@ -78,8 +78,10 @@ fn across(corners: [Point3; 4], open: &[usize], shape: &Shape) -> Option<f64> {
         return None;
     }
     // The height on the boundary face, or the distance between the lines of both edges. The volume is
-    // known to many digits even if the tetrahedron is flat.
-    Some((shape.volume.abs() + shape.error) / length * (1.0 + CLEAR))
+    // known to many digits even if the tetrahedron is flat; the length, if the edges are not parallel.
+    let largest = size.iter().fold(0.0_f64, |m, &s| m.max(s));
+    let error = CLEAR * (1.0 + largest / length);
+    Some((shape.volume.abs() + shape.error) / length * (1.0 + error))
 }
 
 /// A bound for any shape: the distance from a triangle is convex, so no point of a tetrahedron is farther

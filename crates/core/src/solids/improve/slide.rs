@@ -3,9 +3,10 @@
 //!
 //! # Why the surface stays
 //!
-//! A vertex slides if no edge of walls at it ends the plane of a wall (it is inside a facet), or if exactly
-//! two such edges do and they are collinear (it is inside an edge). Coplanarity and collinearity are
-//! exact, and the new position is exactly in all of these planes, and on the line. All tetrahedra at the
+//! An edge continues a facet if it has two walls, which are in one plane on opposite sides of it; at the front
+//! of a crack they are on the same side. A vertex slides if all edges of walls at it continue facets (it is
+//! inside one), or if all but two do, and these are collinear (it is inside an edge). Coplanarity, sides and
+//! collinearity are exact, and the new position is exactly in all of these planes, and on the line. All tetrahedra at the
 //! vertex stay positive, on both sides of the walls. A wall `v a b` with the opposite corner `c` keeps its
 //! orientation in its plane then: `c` does not move, so the sign of the tetrahedron is that of the wall.
 //! So the walls cover the same part of their plane as before, once.
@@ -31,6 +32,18 @@ pub struct Slide {
 /// Whether a point is exactly in the plane of three others.
 fn is_on_plane([a, b, c]: [Point3; 3], x: Point3) -> bool {
     orient3d(a, b, c, x) == Sign::Zero
+}
+
+/// Whether two triangles at the edge from `a` to `b` are in one plane, on opposite sides of it.
+pub fn continues([a, b]: [Point3; 2], [c, d]: [Point3; 2]) -> bool {
+    // In a plane of two axes in which the first triangle is not flat.
+    let sides = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| {
+        let flat = |p: Point3| -> Point2 { [p[i], p[j]] };
+        [c, d].map(|x| orient2d(flat(a), flat(b), flat(x)))
+    });
+    let beside = |[one, two]: [Sign; 2]| one != Sign::Zero && two != Sign::Zero && one != two;
+    let seen = sides.into_iter().find(|[one, _]| *one != Sign::Zero);
+    orient3d(a, b, c, d) == Sign::Zero && seen.is_some_and(beside)
 }
 
 /// Whether three points are exactly collinear.
@@ -74,7 +87,7 @@ impl Slide {
                 planes.push([here, a, b]);
             }
         }
-        // The edges where the plane of a wall ends: not between exactly two coplanar walls.
+        // The edges at which facets end.
         let mut neighbors: Vec<u32> = walls.iter().flatten().copied().collect();
         neighbors.sort_unstable();
         neighbors.dedup();
@@ -83,7 +96,7 @@ impl Slide {
             let beyond = |wall: &[u32; 2]| at(wall[usize::from(wall[0] == u)]);
             match (others.next(), others.next(), others.next()) {
                 (Some(one), Some(two), None) => {
-                    !is_on_plane([here, at(u), beyond(one)], beyond(two))
+                    !continues([here, at(u)], [beyond(one), beyond(two)])
                 }
                 _ => true,
             }
@@ -188,7 +201,8 @@ mod tests {
         points.extend(rim);
         let n = rim.len() as u32;
         let corners = (0..n).map(|i| [1, 0, 2 + (i + 1) % n, 2 + i]).collect();
-        Store::new(points, corners, vec![0; rim.len()]).unwrap()
+        let rows: Vec<u32> = (0..points.len() as u32).collect();
+        Store::new(points, corners, vec![0; rim.len()], &rows).unwrap()
     }
 
     fn slide(store: &Store) -> Option<Slide> {
@@ -219,6 +233,16 @@ mod tests {
         assert!(slide.line.is_some());
         assert_eq!(slide.nearest([0.1, 0.2, 0.3]), Some([0.1, 0.0, 0.0]));
         assert_eq!(slide.along([1.0, 2.0, 3.0]), [1.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn walls_on_one_side_of_an_edge_do_not_continue_each_other() {
+        let edge = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+        let [c, d] = [[1.0, 0.0, 0.5], [-2.0, 0.0, 0.1]];
+        assert!(continues(edge, [c, d]));
+        assert!(!continues(edge, [c, [3.0, 0.0, -1.0]]));
+        assert!(!continues(edge, [c, [-2.0, 1e-300, 0.1]]));
+        assert!(!continues(edge, [c, [0.0, 0.0, 5.0]]));
     }
 
     #[test]

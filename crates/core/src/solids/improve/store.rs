@@ -3,8 +3,8 @@
 //! Stores coordinates but does not use them.
 //!
 //! Corner `k` of a positively oriented tetrahedron lies on the positive side of its face [`FACES`]`[k]`.
-//! A face is a *wall* if nothing lies behind it, or a tetrahedron with another label. Walls never
-//! change, except that [`Store::replace`] may flip two of them in one plane.
+//! A face is a *wall* if nothing lies behind it, or a tetrahedron with another label. Walls change only where
+//! [`Store::replace`] flips two of them in one plane, and where [`Store::remove`] takes a tetrahedron away.
 
 use delone_predicates::Point3;
 
@@ -34,12 +34,15 @@ pub struct Store {
     pub quality: Vec<f64>,
     /// A tetrahedron of each vertex.
     pub at: Vec<u32>,
-    /// Vertices that do not move, those of walls included, unless they slide.
+    /// Vertices that do not move freely, those of walls included.
     pub fixed: Vec<bool>,
     /// Vertices of walls.
     pub rim: Vec<bool>,
     /// Vertices of walls that move if they are inside flat facets or straight edges.
     pub slides: Vec<bool>,
+    /// Vertices whose tetrahedra are not all connected by faces: parts of the mesh touch there. Known only if
+    /// the surface may change.
+    pub pinched: Vec<bool>,
     free: Vec<u32>,
     faces: Vec<Side>,
 }
@@ -53,9 +56,20 @@ fn ascending(mut v: [u32; 3]) -> [u32; 3] {
     v
 }
 
+/// Whether three numbers are an even permutation of their ascending order.
+fn is_even([a, b, c]: [u32; 3]) -> bool {
+    (a < b) ^ (b < c) ^ (a < c)
+}
+
 impl Store {
-    /// Links tetrahedra by their faces. Rejects a face that belongs to three of them.
-    pub fn new(points: Vec<Point3>, corners: Vec<Corners>, label: Vec<i32>) -> Result<Self> {
+    /// Links tetrahedra by their faces. Rejects a face with more than one of them on a side, by the rows of
+    /// its vertices.
+    pub fn new(
+        points: Vec<Point3>,
+        corners: Vec<Corners>,
+        label: Vec<i32>,
+        rows: &[u32],
+    ) -> Result<Self> {
         let (n, m) = (points.len(), corners.len());
         let mut at = filled(n, NONE)?;
         let mut sides: Vec<Side> = with_room(4 * m)?;
@@ -73,17 +87,20 @@ impl Store {
             // All sides of one face: two at most.
             let same = others.iter().take_while(|other| other.0 == face).count();
             let mut wall = true;
+            let is_even = |t: u32, k: usize| is_even(FACES[k].map(|i| corners[t as usize][i]));
             match (same, others) {
                 (0, _) => {}
-                (1, [(_, u, i), ..]) => {
+                // From two sides, the corners go around in opposite directions.
+                (1, [(_, u, i), ..]) if is_even(t, k) != is_even(*u, *i) => {
                     across[t as usize][k] = *u;
                     across[*u as usize][*i] = t;
                     wall = label[t as usize] != label[*u as usize];
                 }
                 _ => {
-                    let [a, b, c] = face;
+                    let [a, b, c] = face.map(|v| rows[v as usize]);
                     return Err(Error::Shape(format!(
-                        "more than two tetrahedra share the face of vertices {a}, {b} and {c}"
+                        "two tetrahedra are on the same side of the face of rows {a}, {b} and {c}: \
+                         they overlap"
                     )));
                 }
             }
@@ -100,6 +117,7 @@ impl Store {
         rim.extend_from_slice(&fixed);
         Ok(Self {
             slides: filled(n, false)?,
+            pinched: filled(n, false)?,
             rim,
             points,
             corners,
@@ -270,11 +288,20 @@ impl Store {
         joined
     }
 
+    fn marks(&mut self) -> [&mut Vec<bool>; 4] {
+        [
+            &mut self.fixed,
+            &mut self.rim,
+            &mut self.slides,
+            &mut self.pinched,
+        ]
+    }
+
     /// Adds a vertex that is not on a wall and has no tetrahedron yet.
     pub fn add(&mut self, place: Point3) -> Result<()> {
         push(&mut self.points, place)?;
         push(&mut self.at, NONE)?;
-        for marks in [&mut self.fixed, &mut self.rim, &mut self.slides] {
+        for marks in self.marks() {
             push(marks, false)?;
         }
         Ok(())
@@ -284,7 +311,7 @@ impl Store {
     pub fn take_back(&mut self) {
         self.points.pop();
         self.at.pop();
-        for marks in [&mut self.fixed, &mut self.rim, &mut self.slides] {
+        for marks in self.marks() {
             marks.pop();
         }
     }

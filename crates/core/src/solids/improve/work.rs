@@ -135,9 +135,9 @@ impl<'a> Work<'a> {
     }
 
     /// Removes tetrahedra at the boundary, within the tolerance, and runs passes, until none is left to
-    /// remove. Each round has fewer tetrahedra, or reaches the limit on passes.
+    /// remove. When the limit on passes is reached, each round has fewer tetrahedra.
     fn peel_passes(&mut self, mut ended: bool, watch: &Watch, tell: Tell) -> Result<bool> {
-        while ended && self.task.tolerance > 0.0 && self.peel_all(watch)? > 0 {
+        while self.task.tolerance > 0.0 && self.peel_all(watch)? > 0 {
             ended = self.run_passes(None, watch, tell)?;
         }
         Ok(ended)
