@@ -10,6 +10,7 @@ from delone import _core
 from delone._base.arrays import as_plain_array
 from delone._base.counting import agreed, counted
 from delone._base.georeference import as_crs, common_crs, is_geographic, transformed
+from delone.areal.corners import crossing_at_corners
 from delone.areal.nested import badly_nested, nesting_problem
 from delone.constrained.geodata import EXTERIOR, INTERIOR, parts_of, require_finite_parts
 from delone.errors import CrossingSegmentsError, DtypeError, InputError
@@ -64,7 +65,9 @@ def as_cells(given: Any, *, name: str, crs: str | None, to: str, workers: int) -
     _require_range(points, name)
     made = _core.PlaneCells(points, rings, cells, holes)
     known = made.check(True, workers)
-    wrong = np.flatnonzero(known.faults == _CROSSING)
+    arrays = points, rings, cells, holes
+    apart = np.flatnonzero(known.faults == _CROSSING)
+    wrong = np.union1d(apart, crossing_at_corners(arrays))
     if len(wrong):
         first = ", ".join(map(str, wrong[:10].tolist()))
         count = len(wrong)
@@ -72,7 +75,7 @@ def as_cells(given: Any, *, name: str, crs: str | None, to: str, workers: int) -
             f"{name}: {counted(count, 'polygon')} {agreed(count, 'has', 'have')} sides that cross "
             f"or are repeated; first: {first}: repair them, for example with shapely.make_valid"
         )
-    nested = badly_nested((points, rings, cells, holes), _core.PlaneCells, workers)
+    nested = badly_nested(arrays, _core.PlaneCells, workers)
     if len(nested):
         raise InputError(f"{name}: {nesting_problem(nested, 'polygon')}")
     empty = np.flatnonzero(known.faults == _EMPTY)

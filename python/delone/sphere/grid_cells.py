@@ -26,8 +26,10 @@ if TYPE_CHECKING:
 
     from delone._base.types import Bools, Floats, Rows
 
-__all__ = ["GridCells", "require_grid"]
+__all__ = ["CROSSING", "GridCells", "fault_error", "require_grid"]
 
+# The fault of cells with sides that cross.
+CROSSING = 4
 # Faults of cells by the core's numbers, and what to do about each.
 _FAULTS = {
     2: ("a side that joins opposite directions", "add a corner between them"),
@@ -35,7 +37,10 @@ _FAULTS = {
         "corners that no hemisphere contains",
         "give winding= to Grid.from_mesh or Grid.from_polygons, or split such cells",
     ),
-    4: ("sides that cross or are repeated", "repair them, for example with shapely.make_valid"),
+    CROSSING: (
+        "sides that cross or are repeated",
+        "repair them, for example with shapely.make_valid",
+    ),
 }
 # Cells overlap if they share more of the smaller one than this; less is a rounding error.
 _SHARED = 1e-12
@@ -43,6 +48,14 @@ _NONE = np.zeros(0, dtype=np.int64)
 # Names of arrays in files: for rows of cells, and for polygons.
 _ROWS = "places", "starts", "meridians", "numbers"
 _RINGS = "places", "rings", "cells", "holes"
+
+
+def fault_error(fault: int, rows: Rows) -> DirectionError:
+    """Return an error for cells with a fault."""
+    count, (what, cure) = len(rows), _FAULTS[fault]
+    cells = f"{counted(count, 'cell')} {agreed(count, 'has', 'have')} {what}"
+    message = f"{cells}, first cell {rows[0]}: {cure}"
+    return DirectionError(message, rows=rows[:10].tolist(), count=count)
 
 
 def require_grid(grid: Any, name: str) -> None:
@@ -173,13 +186,10 @@ class GridCells(Stored):
     def _refuse_faults(self) -> None:
         """Raise an error for cells that cannot be used."""
         faults = self._checked.faults
-        for fault, (what, cure) in _FAULTS.items():
+        for fault in _FAULTS:
             rows = np.flatnonzero(faults == fault)
             if len(rows):
-                count = len(rows)
-                cells = f"{counted(count, 'cell')} {agreed(count, 'has', 'have')} {what}"
-                message = f"{cells}, first cell {rows[0]}: {cure}"
-                raise DirectionError(message, rows=rows[:10].tolist(), count=count)
+                raise fault_error(fault, rows)
 
     @property
     def ncells(self) -> int:
