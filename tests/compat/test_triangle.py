@@ -201,3 +201,9 @@ def test_segments_through_vertices_of_given_triangles() -> None:
     assert rising.sum() > 2 and falling.sum() > 2
     assert set(marker[rising]) == {5} and set(marker[falling]) == {7}
     assert not set(marker[~rising & ~falling]) & {5, 6, 7}
+
+
+def test_no_triangles_are_nothing_to_refine() -> None:
+    square = {"vertices": [(0, 0), (4, 0), (4, 4), (0, 4)], "triangles": np.zeros((0, 3), int)}
+    with pytest.raises(InputError, match="triangles has no rows"):
+        triangulate(square, "rqa1")

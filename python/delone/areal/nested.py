@@ -30,7 +30,7 @@ def nesting_problem(rows: Rows, what: str = "cell") -> str:
     return (
         f"{counted(len(rows), what)} {agreed(len(rows), 'has', 'have')} a hole that is not inside "
         f"its outer ring, or holes or parts that overlap, first {what} {rows[0]}: "
-        'shapely.make_valid with method="structure" repairs such polygons'
+        'shapely.make_valid with method="structure" repairs such polygons, or removes their area'
     )
 
 

@@ -57,7 +57,10 @@ class Given(NamedTuple):
     @classmethod
     def of(cls, triangles: Any, segments: Indices, points: Floats) -> Given:
         """Turn the triangles counter-clockwise, with the first of equal points as corners."""
-        simplices = first_rows(points)[as_simplices(triangles, len(points), 2)].astype(np.int32)
+        rows = as_simplices(triangles, len(points), 2)
+        if not len(rows):
+            raise InputError("triangles has no rows, so there is nothing to refine")
+        simplices = first_rows(points)[rows].astype(np.int32)
         a, b, c = (np.ascontiguousarray(points[simplices[:, k]]) for k in range(3))
         sides = _core.orient2d(a, b, c)
         if not sides.all():
