@@ -513,7 +513,10 @@ class Grid(GridCells):
         Notes
         -----
         Polygons that are cut at 180 degrees fit together there. A polygon that is completed along
-        the edge of the map, with corners at latitude 90, is treated as a polygon around the pole.
+        the edge of the map, with corners at latitude 90, is treated as a polygon around the pole,
+        if its other corners are less than 180 degrees of longitude apart. A box of 360 degrees has
+        no corners between its ends, which are the same point; its area is 0, and
+        ``report.empty`` lists it: insert corners along the parallel.
         Parts of a geometry may have common corners and sides. Their sides cross if the corners are
         rounded differently and `merge` is 0.
 
