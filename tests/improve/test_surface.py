@@ -356,3 +356,18 @@ def test_both_sides_of_an_interface_stay_positive(seed: int) -> None:
     assert (mesh.points[-40:] != points[-40:]).any()
     assert mesh.validate()
     assert mesh.report.smallest_after >= mesh.report.smallest_before
+
+
+def test_a_sliver_that_joins_two_parts_stays() -> None:
+    """Without it, these would have only an edge in common."""
+    points = np.array([(0, -1, 0), (0, 1, 0), (-1, 0, -0.1), (1, 0, -0.1), (0, -2, -1), (0, 2, -1)])
+    both = oriented(points, [(0, 1, 2, 3), (0, 2, 3, 4), (1, 2, 3, 5)])
+    options = {"boundary": "surface", "tolerance": 0.5, "flips": False, "smooth": False}
+    mesh = delone.improve((points, both), **options)
+    assert (mesh.report.tetrahedra_removed, mesh.nsimplex) == (0, 3)
+    # With tetrahedra around the edge, it is removed.
+    points = np.concatenate((points, [(0, 0, -3)]))
+    ring = [(0, 1, 2, 3), (0, 2, 3, 4), (1, 2, 3, 5), (2, 3, 4, 6), (2, 3, 5, 6)]
+    mesh = delone.improve((points, oriented(points, ring)), **options)
+    assert (mesh.report.tetrahedra_removed, mesh.nsimplex) == (1, 4)
+    assert mesh.validate()

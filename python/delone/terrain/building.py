@@ -409,8 +409,8 @@ def compact(  # noqa: PLR0917
     """Leave out rows that are duplicates; all others are vertices."""
     if not kept.any():
         raise InputError(
-            "no triangle is left: max_edge is too small, or the boundary is empty or does not meet the "
-            "points; do both have the same reference system?"
+            "no triangle is left: max_edge is too small, or the boundary is empty or does not meet "
+            "the points; do both have the same reference system?"
         )
     used = mesh.duplicate_of == np.arange(mesh.npoints)
     return Built(
