@@ -289,18 +289,19 @@ def oriented(points: np.ndarray, simplices: list[tuple[int, ...]]) -> np.ndarray
     return made
 
 
-@pytest.mark.parametrize("bend", [0.0, 0.2, -0.2])
-def test_the_front_of_a_slit_stays(bend: float) -> None:
+@pytest.mark.parametrize("x", [0.1, 0.3, -0.3])
+def test_the_front_of_a_slit_stays(x: float) -> None:
     """All walls at its middle vertex are in one plane, but on one side of the front."""
-    points = np.array([(0, -1, 0), (bend, 0.2, 0), (0, 1, 0), (2, 0.1, 0), (2, -0.1, 0),
+    points = np.array([(-0.5, -1, 0), (x, 0.2, 0), (0.5, 1, 0), (2, 0.1, 0), (2, -0.1, 0),
                        (1, 0, 1.5), (-1.5, 0, 0.6), (-1.5, 0, -0.6), (1, 0, -1.5)])  # fmt: skip
     # Around the front, from the upper side of the slit to the lower one.
     ring = [3, 5, 6, 7, 8, 4]
     both = [(x, y, end, 1) for x, y in itertools.pairwise(ring) for end in (0, 2)]
     mesh = delone.improve((points, oriented(points, both)), boundary="surface", min_angle=60)
-    # Inside a straight edge it slides, at a corner of the front it stays.
-    assert (mesh.report.boundary_moves > 0) == (bend == 0)
-    assert (mesh.points[1, [0, 2]] == (bend, 0)).all()
+    # Inside a straight edge it may slide along it, at a corner of the front it stays.
+    place = mesh.points[1]
+    assert (place[0], place[2]) == (place[1] / 2 if x == 0.1 else x, 0)
+    assert x == 0.1 or place[1] == 0.2
     assert mesh.validate()
 
 
