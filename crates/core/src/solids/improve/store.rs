@@ -97,7 +97,7 @@ impl Store {
                     wall = label[t as usize] != label[*u as usize];
                 }
                 _ => {
-                    let [a, b, c] = face.map(|v| rows[v as usize]);
+                    let [a, b, c] = ascending(face.map(|v| rows[v as usize]));
                     return Err(Error::Shape(format!(
                         "two tetrahedra are on the same side of the face of rows {a}, {b} and {c}: \
                          they overlap"
