@@ -115,3 +115,17 @@ def clean(ring: np.ndarray) -> bool:
             ):
                 return False
     return True
+
+
+@pytest.mark.parametrize("at", [1, 1023, 1024, 1499])
+def test_each_ring_is_tested(at: int) -> None:
+    """Also after rings that only touch themselves, and beyond the first thousand."""
+    rings = np.tile(np.array(TOUCHING["two squares"], dtype=float), (1500, 1, 1))
+    rings[at] = CROSSING["bow"]
+    rings += 20 * np.stack(np.divmod(np.arange(1500), 40), axis=1)[:, None]
+    cells = list(shapely.polygons(rings))
+    with pytest.raises(CrossingSegmentsError, match=f"1 polygon has .* first: {at}:"):
+        delone.Overlaps(cells, [shapely.box(0, 0, 1, 1)])
+    with pytest.raises(DirectionError) as caught:
+        sphere.Grid.from_mesh(lonlat=rings / 20)
+    assert caught.value.rows == [at]
