@@ -129,3 +129,16 @@ def test_each_ring_is_tested(at: int) -> None:
     with pytest.raises(DirectionError) as caught:
         sphere.Grid.from_mesh(lonlat=rings / 20)
     assert caught.value.rows == [at]
+
+
+@pytest.mark.parametrize("at", [0, 1023, 1024, 2500])
+def test_each_cell_is_checked(at: int) -> None:
+    """The core checks cells in lots of 1,024: a crossing in a later one is found, too."""
+    rings = np.tile(np.array([(0, 0), (10, 0), (10, 10), (0, 10)], dtype=float), (2501, 1, 1))
+    rings[at] = rings[at, [0, 2, 1, 3]]
+    rings += 20 * np.stack(np.divmod(np.arange(2501), 50), axis=1)[:, None]
+    with pytest.raises(CrossingSegmentsError, match=f"1 polygon has .* first: {at}:"):
+        delone.Overlaps(list(shapely.polygons(rings)), [shapely.box(0, 0, 1, 1)])
+    with pytest.raises(DirectionError, match="sides that cross") as caught:
+        sphere.Grid.from_mesh(lonlat=rings / 20).validate()
+    assert caught.value.rows == [at]
