@@ -362,6 +362,7 @@ fn refined(made: &Recovered, count: usize, split: bool) {
         sources: &sources,
         markers: &markers,
         split,
+        tolerance: 0.0,
         radius_edge: 1.0 + count as f64 / 16.0,
     };
     let mut rounds = Rounds::new(&given).expect("a mesh");

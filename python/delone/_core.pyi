@@ -1456,11 +1456,12 @@ class Refinement3:
         simplices: NDArray[np.int32],
         labels: NDArray[np.int32],
         faces: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]],
-        split: bool,
+        split: tuple[bool, float],
         radius_edge: float,
     ) -> Refinement3:
-        """Tetrahedra with labels, and the faces `(faces, sources, markers)` that stay. With
-        `split`, points may be put on faces.
+        """Tetrahedra with labels, and the faces `(faces, sources, markers)` that stay. `split`
+        says whether points may be put on faces, and within which distance of a plane faces
+        are one facet.
         """
     def fresh(self) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
         """The corners, (k, 12), and the labels, (k,), of tetrahedra whose sizes are not known."""

@@ -46,8 +46,8 @@ pub struct Refinement3(Mutex<Rounds>);
 
 #[pymethods]
 impl Refinement3 {
-    /// Tetrahedra with labels, and the faces `(faces, sources, markers)` that stay. With `split`, points
-    /// may be put on faces.
+    /// Tetrahedra with labels, and the faces `(faces, sources, markers)` that stay. `split` says whether
+    /// points may be put on faces, and within which distance of a plane faces are one facet.
     #[new]
     fn new(
         py: Python<'_>,
@@ -59,7 +59,7 @@ impl Refinement3 {
             PyReadonlyArray1<'_, i32>,
             PyReadonlyArray1<'_, i32>,
         ),
-        split: bool,
+        split: (bool, f64),
         radius_edge: f64,
     ) -> Outcome<Self> {
         let points = rows(&points, "points")?;
@@ -74,7 +74,8 @@ impl Refinement3 {
             faces: own,
             sources: flat(&faces.1, "sources")?,
             markers: flat(&faces.2, "markers")?,
-            split,
+            split: split.0,
+            tolerance: split.1,
             radius_edge,
         };
         let rounds = watched(py, |_| Rounds::new(&given))?;

@@ -20,7 +20,6 @@ from delone._base.arrays import (
     require_finite,
 )
 from delone._base.counting import agreed, counted
-from delone._base.numbers import as_nonnegative
 from delone._base.values import as_labels
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.solids.tetmesh import improving, walls
@@ -196,9 +195,7 @@ def improve(
     )
     removable = _removable(mesh, as_choice(contract, CONTRACT, name="contract"), len(points))
     surface = as_choice(boundary, BOUNDARIES, name="boundary") == "surface"
-    nearby = as_nonnegative(tolerance, name="tolerance", finite=True)
-    if nearby and not surface:
-        raise InputError('tolerance needs boundary="surface"')
+    nearby = improving.as_tolerance(tolerance, boundary)
     passes = as_limit(max_iter, name="max_iter")
     most = min(as_limit(max_points, name="max_points"), _INDEX_MAX - len(points))
     as_callback(progress, name="progress")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._base.numbers import as_between
+from delone._base.numbers import as_between, as_nonnegative
 from delone._base.values import as_marks
 from delone._tiling.space import quality
 from delone.errors import InputError, ShapeError
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from delone._tiling.space.quality import TetQuality
     from delone.solids.tetmesh.report import ImproveReport
 
-__all__ = ["Points", "as_goal", "as_held", "coarsened", "improved", "smoothed"]
+__all__ = ["Points", "as_goal", "as_held", "as_tolerance", "coarsened", "improved", "smoothed"]
 
 # The dihedral angle of the regular tetrahedron, acos(1/3).
 _LARGEST_GOAL = 70.528
@@ -33,6 +33,14 @@ _LARGEST_GOAL = 70.528
 def as_goal(value: float) -> float:
     """Return a goal for the smallest dihedral angle."""
     return as_between(value, 0, _LARGEST_GOAL, name="min_angle")
+
+
+def as_tolerance(value: float, boundary: str) -> float:
+    """Return how far the surface may move, for a checked `boundary`."""
+    nearby = as_nonnegative(value, name="tolerance", finite=True)
+    if nearby and boundary != "surface":
+        raise InputError('tolerance needs boundary="surface"')
+    return nearby
 
 
 def as_held(fixed: ArrayLike | None, count: int) -> Bools:

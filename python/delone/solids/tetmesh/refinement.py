@@ -84,8 +84,8 @@ class RefinementReport(ReadOnly):
     largest_size_ratio : float
         The largest ratio of a tetrahedron to its size; at most 1 if sizes are met.
     surface_distance : float
-        An upper bound on the distance of added points from the input faces: those on faces are
-        rounded to doubles.
+        An upper bound on the distance of the faces of the mesh from the input faces: points on
+        faces are rounded to doubles, and a `tolerance` allows twice as much.
     too_large : ndarray of int64, shape (k,)
         The tetrahedra that are larger than their sizes, ascending.
     above_ratio : ndarray of int64, shape (j,)
@@ -176,6 +176,7 @@ class Bounds(NamedTuple):
     max_volume: Any
     min_angle: float
     split: bool
+    tolerance: float
     max_points: int
     progress: Callable[[int], object] | None
 
@@ -188,6 +189,7 @@ def as_bounds(
     max_volume: Any,
     min_angle: float | None,
     boundary: str,
+    tolerance: float,
     max_points: int | None,
     progress: Callable[[int], object] | None,
 ) -> Bounds:
@@ -205,6 +207,7 @@ def as_bounds(
         max_volume=max_volume,
         min_angle=improving.as_goal(_GOAL if min_angle is None else min_angle),
         split=as_choice(boundary, _BOUNDARIES, name="boundary") == "surface",
+        tolerance=improving.as_tolerance(tolerance, boundary),
         max_points=MOST_ADDED if max_points is None else as_limit(max_points, name="max_points"),
         progress=as_callback(progress, name="progress"),
     )
@@ -299,7 +302,7 @@ def _rounds(
         state.simplices,
         state.labels,
         (state.faces, state.sources, state.markers),
-        bounds.split,
+        (bounds.split, bounds.tolerance / state.unit),
         bounds.radius_edge,
     )
     enough, added = True, 0
@@ -356,6 +359,8 @@ def _finished(
 ) -> Any:
     """Return the mesh of the last state, with its report."""
     (start, state), (total, improvement) = states, done
+    if bounds.tolerance:
+        _require_apart(state, bounds.tolerance)
     simplices = np.ascontiguousarray(state.simplices)
     excess = _excess(state.points, simplices, lengths.at(*_placed(state)))
     shapes = _radius_edge(state.points[simplices])
@@ -374,7 +379,7 @@ def _finished(
         radius_edge=bounds.radius_edge,
         largest_radius_edge=float(shapes.max(initial=0.0)),
         largest_size_ratio=float(excess.max(initial=0.0)),
-        surface_distance=_distance(start, state) * start.unit,
+        surface_distance=max(_distance(start, state) * start.unit, 2 * bounds.tolerance),
         too_large=np.flatnonzero(excess > 1 + _ROUNDING),
         above_ratio=np.flatnonzero(shapes > bounds.radius_edge * (1 + _ROUNDING)),
         improvement=improvement,
@@ -392,6 +397,16 @@ def _finished(
     }
     nadded = mesh.nadded + len(points) - mesh.npoints
     return type(mesh)._of(arrays, report, nadded, mesh._workers)
+
+
+def _require_apart(state: _State, tolerance: float) -> None:
+    """Require that faces that moved within the tolerance do not cross others."""
+    faces = np.ascontiguousarray(state.faces)
+    if _core.check_surface3(state.points, faces, 0, 0).pairs.ncrossing:
+        raise InputError(
+            f"faces would cross others if they were moved by tolerance={tolerance:g}: give a "
+            "tolerance that is smaller than the gaps between faces"
+        )
 
 
 def _recovery(report: ImproveReport | RecoveryReport | RefinementReport) -> RecoveryReport | None:

@@ -224,6 +224,7 @@ class TetMesh(Triangulation):
         size: Any = None,
         min_angle: float | None = None,
         boundary: str = "faces",
+        tolerance: float = 0.0,
         max_points: int | None = None,
         progress: Callable[[int], object] | None = None,
     ) -> TetMesh:
@@ -252,8 +253,12 @@ class TetMesh(Triangulation):
             no such step.
         boundary : {"faces", "surface"}, optional
             What is kept: all `input_faces` and faces between regions, bit for bit; or the surface,
-            on which points may be added: planar parts are triangulated again, and edges between
-            these are divided.
+            on which points are added where sizes and shapes require them: planar parts are
+            triangulated again, and edges between these are divided.
+        tolerance : float, optional
+            With ``boundary="surface"``, adjacent faces with one marker whose vertices are all
+            within this distance of one plane are one planar part, in the unit of the points. Faces
+            move by up to twice the distance. By default 0: a planar part is exactly in one plane.
         max_points : int, optional
             Maximum number of added points; by default 2,000,000. Sizes that require far more raise
             an error before the refinement starts; otherwise it stops at the limit, and the report
@@ -272,7 +277,8 @@ class TetMesh(Triangulation):
         ------
         InputError, ShapeError, DtypeError
             `marked` is not a mask or array of tetrahedra of the mesh; a size is NaN, zero or
-            negative (the message gives the position); an argument is invalid.
+            negative (the message gives the position); faces that `tolerance` moves would cross
+            others; an argument is invalid.
         BudgetExceededError
             The sizes require more points than `max_points`; the error contains the estimate.
         LimitError
@@ -284,9 +290,10 @@ class TetMesh(Triangulation):
         -----
         Delaunay refinement (J. R. Shewchuk 1998): the circumcenter of a tetrahedron that is too
         large, or whose radius-edge ratio is too large, becomes a vertex, unless it is beyond a face
-        or too close to one. For sizes, with ``boundary="surface"``, a point on that face or edge is
-        added instead. For shapes, points are added between faces only: where faces have small
-        angles, no point makes their tetrahedra better.
+        or too close to one. With ``boundary="surface"``, a point on that face or edge is added
+        instead; for shapes only where the ratio is above 2, and not nearer to others than a share
+        of the edges and heights of the input there. Where faces or edges meet at small angles, no
+        point makes their tetrahedra better.
 
         New edges are not shorter than the shortest edge of the tetrahedron that is refined, or half
         of its size, so the refinement ends. With ``boundary="faces"``, tetrahedra at faces
@@ -327,6 +334,7 @@ class TetMesh(Triangulation):
             max_volume=max_volume,
             min_angle=min_angle,
             boundary=boundary,
+            tolerance=tolerance,
             max_points=max_points,
             progress=progress,
         )

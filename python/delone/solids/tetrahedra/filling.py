@@ -96,8 +96,11 @@ def tetrahedralize(
         `imprint_surface`: for assemblies, whose bodies are in contact or overlap. Cut faces can
         leave the surface by rounding; see `report`. By default, faces that cross are an error.
     tolerance : float, optional
-        With ``imprint=True``, the distance below which vertices, edges and faces are joined, as for
-        `imprint_surface`.
+        How far the mesh may be from the surface. With ``imprint=True``, vertices, edges and faces
+        within this distance are joined, as by `imprint_surface`. With ``boundary="surface"`` and
+        sizes or bounds on shapes, triangles within this distance of one plane are one planar part,
+        as for ``TetMesh.refine``: coordinates of STL files are rounded, so that triangles of a
+        plane side are in slightly different planes.
     inside : {"winding", "parity", "enclosed"}, optional
         What is filled: regions with a nonzero winding number; regions that an odd number of faces
         separates from the outside, whatever their orientation; or everything enclosed. By default
@@ -240,6 +243,7 @@ def tetrahedralize(
             max_volume=max_volume,
             min_angle=min_angle,
             boundary=boundary,
+            tolerance=tolerance if tolerance and boundary == "surface" else 0.0,
             max_points=max_points,
             progress=None,
         )
@@ -249,8 +253,11 @@ def tetrahedralize(
     if as_flag(imprint, name="imprint"):
         cut = imprint_surface(task.points, task.faces, tolerance=tolerance, workers=workers)
         task = task.imprinted(cut)
-    elif tolerance is not None:
-        raise InputError("tolerance is for imprint=True: otherwise nothing is rounded or joined")
+    elif tolerance is not None and (bounds is None or boundary == "faces"):
+        raise InputError(
+            'tolerance is for imprint=True, or for boundary="surface" with sizes or bounds on '
+            "shapes: otherwise nothing is rounded or joined"
+        )
     stages = _Stages(task, cut, boundary, inside or surface.rule, progress, bounds)
     return stages.filled()
 

@@ -5,19 +5,17 @@ use std::collections::HashSet;
 use delone_predicates::{Sign, orient3d};
 
 use super::judge::{cross, dot, minus};
-use super::mesh::{Mesh, Side, edge};
+use super::mesh::{Mesh, edge};
+use super::near::{self, AtEdge};
 use crate::base::error::{Error, Result};
 use crate::base::memory::{push, with_room};
 use crate::base::sets::Sets;
 
-/// A wall at an edge: the edge, the wall's number, its third vertex, and a side of it.
-type AtEdge = ([u32; 2], u32, u32, Side);
-
 /// Joins walls to facets and collects the segments.
 ///
 /// Walls are in one facet if they came from one face, or have equal markers and are in one plane,
-/// exactly, on two sides of an edge that has no other wall.
-pub fn collect(mesh: &mut Mesh, source: &[i32], markers: &[i32]) -> Result<()> {
+/// exactly or by [`near`] a common plane, on two sides of an edge that has no other wall.
+pub fn collect(mesh: &mut Mesh, source: &[i32], markers: &[i32], tolerance: f64) -> Result<()> {
     let mut at: Vec<AtEdge> = with_room(3 * mesh.facet.len())?;
     for t in (0..mesh.places()).filter(|&t| mesh.is_there(t)) {
         for k in 0..4 {
@@ -34,6 +32,7 @@ pub fn collect(mesh: &mut Mesh, source: &[i32], markers: &[i32]) -> Result<()> {
     at.sort_unstable();
     // Join walls across edges between two of them.
     let mut sets = Sets::of(mesh.facet.len())?;
+    let mut bent: Vec<(u32, u32, bool)> = Vec::new();
     let mut rest = at.as_slice();
     while let Some((&(ends, first, z, _), others)) = rest.split_first() {
         let same = others.iter().take_while(|o| o.0 == ends).count();
@@ -41,16 +40,20 @@ pub fn collect(mesh: &mut Mesh, source: &[i32], markers: &[i32]) -> Result<()> {
             let (_, second, w, _) = others[0];
             let [a, b, c, d] = mesh.places_of([ends[0], ends[1], z, w]);
             let (i, j) = (first as usize, second as usize);
-            let one = source[i] == source[j]
-                || (markers[i] == markers[j]
-                    && orient3d(a, b, c, d) == Sign::Zero
-                    // On two sides: the normals from the edge are opposite.
-                    && dot(cross(minus(b, a), minus(c, a)), cross(minus(b, a), minus(d, a))) < 0.0);
-            if one {
+            // On two sides: the normals from the edge are opposite.
+            let normals = [c, d].map(|x| cross(minus(b, a), minus(x, a)));
+            let opposite = dot(normals[0], normals[1]) < 0.0;
+            let alike = markers[i] == markers[j];
+            if source[i] == source[j] || (alike && opposite && orient3d(a, b, c, d) == Sign::Zero) {
                 sets.join(first, second);
+            } else if alike && tolerance > 0.0 {
+                push(&mut bent, (first, second, opposite))?;
             }
         }
         rest = &others[same..];
+    }
+    if !bent.is_empty() {
+        near::join(mesh, &at, &bent, &mut sets, tolerance)?;
     }
     for (row, facet) in (0..).zip(&mut mesh.facet) {
         *facet = sets.root(row);

@@ -4,6 +4,11 @@ use delone_predicates::Point3;
 
 pub type Vector = [f64; 3];
 
+/// The edges of a tetrahedron.
+pub const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+/// Spheres are smaller than computed by this share: points on them are outside.
+pub const ROUNDING: f64 = 1e-9;
+
 /// The difference of two points.
 #[inline(always)]
 pub fn minus(a: Point3, b: Point3) -> Vector {
@@ -108,6 +113,17 @@ pub fn triangle([a, b, c]: [Point3; 3]) -> (f64, f64) {
     let longest = dot(p, p).max(dot(q, q)).max(dot(r, r));
     // Twice the area of an equilateral triangle with edges e: e^2 sqrt(3) / 2.
     ((twice * 2.0 / 3.0_f64.sqrt()).sqrt(), longest.sqrt())
+}
+
+/// The smallest height of a triangle; 0 if it has no area.
+pub fn lowest([a, b, c]: [Point3; 3]) -> f64 {
+    let normal = cross(minus(b, a), minus(c, a));
+    let longest = distance(a, b).max(distance(b, c)).max(distance(c, a));
+    if longest > 0.0 {
+        dot(normal, normal).sqrt() / longest
+    } else {
+        0.0
+    }
 }
 
 /// By which factor a triangle is too large.

@@ -10,7 +10,7 @@
 //! # Terms
 //!
 //! A *wall* is a face that must stay: of the boundary, between labels, or inside. Walls in one
-//! plane form a *facet*; a *segment* is an edge where facets end. The *cavity* of a point is the
+//! plane, exactly or within a tolerance, form a *facet*; a *segment* is an edge where facets end. The *cavity* of a point is the
 //! set of tetrahedra that its insertion replaces.
 //!
 //! # Invariants
@@ -31,6 +31,13 @@
 //! smallest size, and where cavities contain the nearest vertex, as they do in Delaunay meshes,
 //! balls around the points are disjoint. The limit on points ends it in any case.
 //!
+//! A point on the boundary for a shape may be nearer: each vertex of the input has a *floor*, a share of
+//! its shortest edge and of the heights of walls there, and a new vertex gets that of the tetrahedron
+//! that requests it: the floor of an end of its shortest edge. So there are only finitely many floors,
+//! all positive, and edges are at least as long as the smallest. Where walls or segments meet at sharp
+//! angles, points would request others ever closer to the corner: the floors stop them, and at segments
+//! that are split at equal distances from their common end, the edge between them requests none.
+//!
 //! # Determinism
 //!
 //! Vertices and tetrahedra are sorted by coordinates first, and requests by urgency and age.
@@ -40,6 +47,7 @@ mod cavity;
 mod facet;
 mod judge;
 mod mesh;
+mod near;
 mod order;
 mod place;
 #[cfg(test)]

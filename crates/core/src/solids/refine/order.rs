@@ -30,6 +30,8 @@ pub struct Given<'a> {
     pub markers: &'a [i32],
     /// Whether points may be put on faces.
     pub split: bool,
+    /// If points may be: faces within this distance of one plane are one facet.
+    pub tolerance: f64,
     /// The largest ratio of the circumradius to the shortest edge; infinite for none.
     pub radius_edge: f64,
 }
@@ -116,7 +118,12 @@ pub fn import(given: &Given) -> Result<(Mesh, Order)> {
     };
     set_walls(&mut mesh, given, &place)?;
     if given.split {
-        facet::collect(&mut mesh, given.sources, given.markers)?;
+        facet::collect(
+            &mut mesh,
+            given.sources,
+            given.markers,
+            given.tolerance * scale,
+        )?;
     }
     let order = Order {
         given: crate::base::memory::copied(given.points)?,

@@ -89,6 +89,7 @@ fn given<'a>(
         sources: rows,
         markers: zeros,
         split,
+        tolerance: 0.0,
         radius_edge: ratio,
     }
 }
