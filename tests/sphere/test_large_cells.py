@@ -174,7 +174,7 @@ def test_what_is_refused_and_warned_of() -> None:
     # The second crossing is at a place that the triangulation adds.
     for end in (290, 300):
         bow = [(0, 0), (100, 0), (200, 0), (end, 0), (150, 50), (300, -50)]
-        with pytest.raises(delone.DirectionError, match="cell 1 has sides that cross") as caught:
+        with pytest.raises(delone.DirectionError, match=r"1 cell .* cross .* cell 1:") as caught:
             Grid.from_mesh(lonlat=[*ring, *bow], starts=[0, 4, 10], winding="smaller")
         assert caught.value.rows.tolist() == [1]
     with warnings.catch_warnings():

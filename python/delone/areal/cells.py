@@ -10,7 +10,6 @@ from delone import _core
 from delone._base.arrays import as_plain_array
 from delone._base.counting import agreed, counted
 from delone._base.georeference import as_crs, common_crs, is_geographic, transformed
-from delone.areal.corners import crossing_at_corners
 from delone.areal.nested import badly_nested, nesting_problem
 from delone.constrained.geodata import EXTERIOR, INTERIOR, parts_of, require_finite_parts
 from delone.errors import CrossingSegmentsError, DtypeError, InputError
@@ -63,11 +62,10 @@ def as_cells(given: Any, *, name: str, crs: str | None, to: str, workers: int) -
     if to:
         points = np.ascontiguousarray(transformed(given, points, crs, name=name, to=to))
     _require_range(points, name)
-    made = _core.PlaneCells(points, rings, cells, holes)
-    known = made.check(True, workers)
     arrays = points, rings, cells, holes
-    apart = np.flatnonzero(known.faults == _CROSSING)
-    wrong = np.union1d(apart, crossing_at_corners(arrays))
+    made = _core.PlaneCells(*arrays)
+    known = made.check(True, workers)
+    wrong = np.flatnonzero(known.faults == _CROSSING)
     if len(wrong):
         first = ", ".join(map(str, wrong[:10].tolist()))
         count = len(wrong)

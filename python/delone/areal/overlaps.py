@@ -62,7 +62,7 @@ class Overlaps(SharedAreas[AreaWeights], Stored):
         that overlap; a cell is unbounded, coordinates are longitudes and latitudes, or the
         reference systems differ and pyproj cannot transform.
     CrossingSegmentsError
-        Sides of a polygon cross.
+        Sides of a polygon cross, or a ring crosses itself where it touches itself.
     MissingExtraError
         The extra for geometries is not installed.
     MemoryError
@@ -85,6 +85,9 @@ class Overlaps(SharedAreas[AreaWeights], Stored):
     it is accurate to its last bits, even for small cells far from the origin. No polygon is
     clipped. Parts below 1e-24 of the squared extent of the smaller cell cannot be distinguished
     from cells that only touch, and are not pairs.
+
+    A ring may touch itself: at corners, in sides, and along sides that it passes in opposite
+    directions. Exact signs decide whether it crosses itself there.
 
     Time is O(n log n + k) for cells with few corners. For pairs of polygons with many corners, it
     depends on the corners of one polygon near the box of the other.

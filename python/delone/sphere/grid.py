@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone._base.arrays import as_choice, as_flag, as_number, as_text, as_workers
-from delone.areal.corners import crossing_at_corners
 from delone.errors import InputError
 from delone.sphere import rings as rings_of
 from delone.sphere.boxes import rows_of
@@ -15,7 +14,7 @@ from delone.sphere.coordinates import directions_of, lonlat_of
 from delone.sphere.fesom import median_dual, read_text
 from delone.sphere.formats import Choices, read_cells
 from delone.sphere.gaussian import gaussian_bounds
-from delone.sphere.grid_cells import CROSSING, GridCells, fault_error
+from delone.sphere.grid_cells import GridCells
 from delone.sphere.healpix import healpix_corners
 from delone.sphere.large import tell_clockwise, wound
 from delone.sphere.nested import require_nested
@@ -698,9 +697,6 @@ class Grid(GridCells):
         if winding is not None:
             arrays, divided = wound(arrays, winding, workers)
         made = cls._of("arc", arrays, shape, merged, workers)
-        wrong = crossing_at_corners(given)
-        if len(wrong):
-            raise fault_error(CROSSING, wrong)
         require_nested(given, divided, workers)
         if winding is None:
             tell_clockwise(made._checked.turned, made.areas)

@@ -8,16 +8,17 @@ import numpy as np
 
 from delone import _core
 from delone._base.arrays import as_workers
-from delone._base.counting import agreed, counted
+from delone._base.counting import counted
 from delone._base.georeference import as_known_crs
 from delone._base.immutable import kept, sealed
 from delone._tiling.complex import Stored
-from delone.errors import DirectionError, DtypeError, ShapeError
+from delone.errors import DtypeError, ShapeError
 from delone.sphere import rings as rings_of
 from delone.sphere.coordinates import as_step, lonlat_of, units_of
+from delone.sphere.faults import EMPTY, FAULTS, LARGE, fault_error
 from delone.sphere.grid_report import GridFaults, GridReport
 from delone.sphere.holes import Holes, holes_between_arcs, holes_between_rows
-from delone.sphere.large import LARGE, Parts, overlaps_of
+from delone.sphere.large import Parts, overlaps_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,36 +27,14 @@ if TYPE_CHECKING:
 
     from delone._base.types import Bools, Floats, Rows
 
-__all__ = ["CROSSING", "GridCells", "fault_error", "require_grid"]
+__all__ = ["GridCells", "require_grid"]
 
-# The fault of cells with sides that cross.
-CROSSING = 4
-# Faults of cells by the core's numbers, and what to do about each.
-_FAULTS = {
-    2: ("a side that joins opposite directions", "add a corner between them"),
-    LARGE: (
-        "corners that no hemisphere contains",
-        "give winding= to Grid.from_mesh or Grid.from_polygons, or split such cells",
-    ),
-    CROSSING: (
-        "sides that cross or are repeated",
-        "repair them, for example with shapely.make_valid",
-    ),
-}
 # Cells overlap if they share more of the smaller one than this; less is a rounding error.
 _SHARED = 1e-12
 _NONE = np.zeros(0, dtype=np.int64)
 # Names of arrays in files: for rows of cells, and for polygons.
 _ROWS = "places", "starts", "meridians", "numbers"
 _RINGS = "places", "rings", "cells", "holes"
-
-
-def fault_error(fault: int, rows: Rows) -> DirectionError:
-    """Return an error for cells with a fault."""
-    count, (what, cure) = len(rows), _FAULTS[fault]
-    cells = f"{counted(count, 'cell')} {agreed(count, 'has', 'have')} {what}"
-    message = f"{cells}, first cell {rows[0]}: {cure}"
-    return DirectionError(message, rows=rows[:10].tolist(), count=count)
 
 
 def require_grid(grid: Any, name: str) -> None:
@@ -186,7 +165,7 @@ class GridCells(Stored):
     def _refuse_faults(self) -> None:
         """Raise an error for cells that cannot be used."""
         faults = self._checked.faults
-        for fault in _FAULTS:
+        for fault in FAULTS:
             rows = np.flatnonzero(faults == fault)
             if len(rows):
                 raise fault_error(fault, rows)
@@ -231,7 +210,7 @@ class GridCells(Stored):
             merged=self._merged,
             repeated=known.repeated,
             reversed=np.flatnonzero(known.turned),
-            empty=np.flatnonzero(known.faults == 1),
+            empty=np.flatnonzero(known.faults == EMPTY),
             concave=np.flatnonzero(known.concave),
             large=np.flatnonzero(self._made.large) if isinstance(self._made, Parts) else _NONE,
             masked=np.flatnonzero(~self._mask) if self._mask is not None else _NONE,

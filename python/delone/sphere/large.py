@@ -17,8 +17,9 @@ from delone import _core
 from delone._base.arrays import as_choice, as_workers
 from delone._base.counting import agreed, counted
 from delone._base.georeference import caller_level
-from delone.errors import CrossingSegmentsError, DirectionError, InputError
+from delone.errors import InputError
 from delone.sphere.constrained import WINDINGS, ConstrainedDelaunay, Given
+from delone.sphere.faults import CROSSING, EMPTY, LARGE, fault_error
 from delone.sphere.land import Rings, first_polygon
 from delone.sphere.nested import nested, refuse
 from delone.sphere.sides import Origin, PolygonWarning
@@ -28,10 +29,8 @@ if TYPE_CHECKING:
 
     Arrays = tuple[Floats, Rows, Rows, Bools]
 
-__all__ = ["LARGE", "Parts", "overlaps_of", "tell_clockwise", "wound"]
+__all__ = ["Parts", "overlaps_of", "tell_clockwise", "wound"]
 
-# The core's numbers for faults of cells.
-_EMPTY, LARGE = 1, 3
 # Points added to the corners, so that no triangle is nearly as large as a hemisphere.
 _BETWEEN = np.array([v for v in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(v)])
 # Each large cell is triangulated separately, so there is a limit.
@@ -92,10 +91,10 @@ class Parts:
         found = self.core.check(crossing, workers)
         count = len(self.faults)
         faults = np.where(self.large, 0, self.faults)
-        wrong = np.flatnonzero(found.faults > _EMPTY)
+        wrong = np.flatnonzero(found.faults > EMPTY)
         np.maximum.at(faults, self.owner[wrong], found.faults[wrong])
         areas = _sums(self.owner, found.areas, count)
-        faults[self.large & (areas == 0) & (faults == 0)] = _EMPTY
+        faults[self.large & (areas == 0) & (faults == 0)] = EMPTY
         turned, concave = np.zeros(count, dtype=bool), self.large.copy()
         turned[self.owner[found.turned]] = True
         concave[self.owner[found.concave]] = True
@@ -149,7 +148,7 @@ def wound(arrays: Arrays, winding: str, workers: int | None) -> tuple[Arrays, Ro
         alone = np.arange(count + 1, dtype=np.int64), np.zeros(count, dtype=np.bool_)
         each = _core.CellGrid.polygons(vectors, rings, *alone).check(False, threads)
         # Outer rings with the larger part of the sphere on the chosen side.
-        against = (each.turned == (winding == "ccw")) & (each.faults != _EMPTY) & ~holes
+        against = (each.turned == (winding == "ccw")) & (each.faults != EMPTY) & ~holes
         number = np.repeat(np.arange(len(cells) - 1), np.diff(cells))
         large[number[against]] = True
     rows = np.flatnonzero(large)
@@ -158,6 +157,11 @@ def wound(arrays: Arrays, winding: str, workers: int | None) -> tuple[Arrays, Ro
             f"{len(rows)} cells are larger than a hemisphere with winding={winding!r:.20}, first "
             f'cell {rows[0]}: do rings run the other way? winding="smaller" takes the smaller side'
         )
+    if len(rows):
+        # A mesh does not tell whether a ring crosses itself where it touches itself.
+        faults = _core.CellGrid.polygons(*arrays).check(True, threads).faults
+        if len(crossed := rows[faults[rows] == CROSSING]):
+            raise fault_error(CROSSING, crossed)
     parts = {row: _triangles(arrays, row, winding, workers) for row in rows.tolist()}
     beyond = [row for row, part in parts.items() if part.area > 2 * np.pi + _HALF]
     if len(beyond) > 1:
@@ -208,27 +212,12 @@ def _triangles(arrays: Arrays, row: int, winding: str, workers: int | None) -> _
         mesh = ConstrainedDelaunay._of_geometries(places, given, None, True, workers)
         ordered = Rings(origin, mesh.duplicate_of[segments], winding)
         inside = first_polygon(mesh._made, mesh.areas, mesh._component, ordered, warn=False)
-    except CrossingSegmentsError as error:
-        raise DirectionError(f"cell {row} has sides that cross: {error}", rows=[row]) from None
     except InputError as error:
         raise InputError(f"cell {row}: {error}") from None
-    at, times = np.unique(_passed(mesh, segments, len(corners)), return_counts=True)
-    if (times > 1).any():
-        x, y = mesh.lonlat[at[times > 1][0]].tolist()
-        raise DirectionError(f"cell {row} has sides that cross at ({x:g}, {y:g})", rows=[row])
     of_side = np.repeat(np.arange(len(own)), np.diff(rings[own.start : own.stop + 1]))
     right = nested(mesh, inside == 0, of_side.astype(np.int32), holes[own.start : own.stop])
     chosen = inside[mesh._component] == 0
     return _Part(mesh.vectors[mesh.simplices[chosen]], float(mesh.areas[chosen].sum()), right)
-
-
-def _passed(mesh: ConstrainedDelaunay, segments: Rows, count: int) -> Rows:
-    """Return the vertices from `count` on that sides pass through, once for each such side."""
-    row, vertex = mesh._made.through[mesh._made.through[:, 1] >= count].T
-    # Equal sides are one.
-    ends = np.sort(segments[row], axis=1)
-    found: Rows = np.unique(np.column_stack((vertex, ends)), axis=0)[:, 0]
-    return found
 
 
 def _replaced(arrays: Arrays, given: dict[int, Floats]) -> Arrays:

@@ -14,14 +14,12 @@ use delone_predicates::arithmetic::Pair;
 use delone_predicates::sphere::{Unit, leveled, same};
 use delone_predicates::{Point3, Sign, orient2d};
 
-use crate::base::error::Result;
 use crate::base::points::Extent;
-use crate::base::watch::Watch;
 use crate::locate::boxes::Boxes;
 
-use super::outline::{Fault, Prepared, distinct, start_at_smallest};
+use super::outline::{Fault, Lie, Prepared, distinct, start_at_smallest};
 use super::pairs::{Pair3, Turn, chart_of, cross_of, heads};
-use super::sides::{MANY, any_pair};
+use super::sides::MANY;
 use super::signs::{Moved, Side, side};
 
 /// Cells with smaller areas, in steradians, are empty: sums of triangles err by less.
@@ -69,6 +67,8 @@ pub struct Cell {
     pub turned: bool,
     /// Corners that repeat the one before.
     pub repeated: usize,
+    /// Whether it has an area.
+    pub usable: bool,
     /// Sides by their boxes.
     pub kept: OnceLock<Boxes<3>>,
 }
@@ -87,6 +87,7 @@ impl Prepared<3> for Cell {
             convex: false,
             turned: false,
             repeated: 0,
+            usable: false,
             kept: OnceLock::new(),
         };
         let mut kept: Vec<(bool, Ring)> = Vec::new();
@@ -107,7 +108,7 @@ impl Prepared<3> for Cell {
             return (None, Some(Fault::Empty));
         }
         let Some(mut cap) = around(&kept) else {
-            return (None, Some(Fault::Large));
+            return (Some(cell.with_rings(&kept)), Some(Fault::Large));
         };
         let (mut axis, mut changed) = (chart_of(cap.0), false);
         let mut all = Turn::new();
@@ -126,7 +127,7 @@ impl Prepared<3> for Cell {
             // Again, now that the order of corners is independent of that of the input: charts depend
             // on the last bits of a center that is as near to one axis as to another.
             let Some(again) = around(&kept) else {
-                return (None, Some(Fault::Large));
+                return (Some(cell.with_rings(&kept)), Some(Fault::Large));
             };
             (cap, axis) = (again, chart_of(again.0));
         }
@@ -139,11 +140,10 @@ impl Prepared<3> for Cell {
         (cell.center, cell.radius) = cap;
         cell.area = all.area();
         if cell.area < LEAST {
-            return (None, Some(Fault::Empty));
+            return (Some(cell.with_rings(&kept)), Some(Fault::Empty));
         }
-        for (_, ring) in &kept {
-            cell.add(ring);
-        }
+        cell = cell.with_rings(&kept);
+        cell.usable = true;
         cell.convex = cell.corners.len() <= MANY && cell.is_convex();
         (Some(cell), None)
     }
@@ -160,9 +160,53 @@ impl Prepared<3> for Cell {
         self.repeated
     }
 
-    fn crossing(&self, watch: &Watch) -> Result<bool> {
-        let bad = |e: u32, f: u32| self.cross(e as usize, f as usize);
-        Ok(!self.convex && any_pair(self, bad, watch)?)
+    fn lie(&self, e: u32, f: u32) -> Lie {
+        let (first, second) = (self.side(e as usize), self.side(f as usize));
+        let [s, t] = [second.a, second.b].map(|v| side(first, v, Moved::Neither));
+        if s == 0 && t == 0 {
+            let bad = self.usable && same_way(first, second);
+            return if bad { Lie::Crossing } else { Lie::Touching };
+        }
+        if s * t > 0 || (s * t == 0 && self.follow(e, f)) {
+            return Lie::Apart;
+        }
+        let [u, v] = [first.a, first.b].map(|v| side(second, v, Moved::Neither));
+        match u * v {
+            1 => Lie::Apart,
+            // One arc, not its antipode, crosses the other: see `meet`.
+            -1 if s * t < 0 && s == v => Lie::Crossing,
+            -1 if s * t < 0 => Lie::Apart,
+            _ => Lie::Touching,
+        }
+    }
+
+    fn equal(&self, k: u32, l: u32) -> bool {
+        same(self.corners[k as usize].v, self.corners[l as usize].v)
+    }
+
+    fn inside(&self, e: u32, corner: u32) -> bool {
+        let (e, v) = (self.side(e as usize), self.corners[corner as usize].v);
+        if side(e, v, Moved::Neither) != 0 {
+            return false;
+        }
+        let seen = Seen::along(e);
+        seen.turn(e.a, v) == seen.way && seen.turn(v, e.b) == seen.way
+    }
+
+    fn along(&self, e: u32, k: u32, l: u32) -> Ordering {
+        let seen = Seen::along(self.side(e as usize));
+        let [k, l] = [k, l].map(|corner| self.corners[corner as usize].v);
+        match seen.turn(k, l) {
+            Sign::Zero => Ordering::Equal,
+            turn if turn == seen.way => Ordering::Less,
+            _ => Ordering::Greater,
+        }
+    }
+
+    fn turn(&self, at: u32, from: u32, to: u32) -> i8 {
+        let [a, b, v] = [at, from, to].map(|k| self.corners[k as usize].v);
+        let n = cross_of(a, b);
+        side(Side { a, b, n: &n }, v, Moved::Neither) as i8
     }
 }
 
@@ -178,6 +222,13 @@ impl Cell {
         let found: Ring = found.into_iter().map(|v| (v, unit_of(v))).collect();
         self.repeated += ring.len() - found.len();
         found
+    }
+
+    fn with_rings(mut self, rings: &[(bool, Ring)]) -> Self {
+        for (_, ring) in rings {
+            self.add(ring);
+        }
+        self
     }
 
     fn add(&mut self, ring: &Ring) {
@@ -263,42 +314,46 @@ impl Cell {
             })
         })
     }
+}
 
-    fn cross(&self, e: usize, f: usize) -> bool {
-        let (first, second) = (self.side(e), self.side(f));
-        let s1 = side(first, second.a, Moved::Neither);
-        let s2 = side(first, second.b, Moved::Neither);
-        if s1 == 0 && s2 == 0 {
-            return same_way(first, second);
-        }
-        if s1 * s2 >= 0 {
-            return false;
-        }
-        let s3 = side(second, first.a, Moved::Neither);
-        let s4 = side(second, first.b, Moved::Neither);
-        // One arc, not its antipode, crosses the other: see `meet`.
-        s3 * s4 < 0 && s1 == s4
+/// A circle seen along the largest coordinate of its normal, where turns are exact.
+struct Seen {
+    axes: [usize; 2],
+    /// The turn of a side on the circle.
+    way: Sign,
+}
+
+impl Seen {
+    fn along(e: Side) -> Self {
+        let top = (1..3).fold(0, |top: usize, k| {
+            if e.n[k].hi.abs() > e.n[top].hi.abs() {
+                k
+            } else {
+                top
+            }
+        });
+        let mut seen = Self {
+            axes: [(top + 1) % 3, (top + 2) % 3],
+            way: Sign::Zero,
+        };
+        seen.way = seen.turn(e.a, e.b);
+        seen
+    }
+
+    fn turn(&self, p: Point3, q: Point3) -> Sign {
+        let [i, j] = self.axes;
+        orient2d([p[i], p[j]], [q[i], q[j]], [0.0; 2])
     }
 }
 
 /// Whether sides of one circle run the same way in a common part: the cell is to the left of both, so
 /// it covers what is beside them twice.
 fn same_way(e: Side, f: Side) -> bool {
-    // On one circle, turns are seen along the largest coordinate of its normal, and are exact there.
-    let top = (1..3).fold(0, |top: usize, k| {
-        if e.n[k].hi.abs() > e.n[top].hi.abs() {
-            k
-        } else {
-            top
-        }
-    });
-    let (i, j) = ((top + 1) % 3, (top + 2) % 3);
-    let turn = |p: Point3, q: Point3| orient2d([p[i], p[j]], [q[i], q[j]], [0.0; 2]);
-    let way = turn(e.a, e.b);
+    let seen = Seen::along(e);
     // Whether a corner is after the start of a side, or is it, and before its end.
-    let from = |s: Side, q: Point3| same(s.a, q) || turn(s.a, q) == way;
-    let starts = |s: Side, q: Point3| from(s, q) && turn(q, s.b) == way;
-    turn(f.a, f.b) == way && (starts(e, f.a) || starts(f, e.a))
+    let from = |s: Side, q: Point3| same(s.a, q) || seen.turn(s.a, q) == seen.way;
+    let starts = |s: Side, q: Point3| from(s, q) && seen.turn(q, s.b) == seen.way;
+    seen.turn(f.a, f.b) == seen.way && (starts(e, f.a) || starts(f, e.a))
 }
 
 /// The direction as pairs.

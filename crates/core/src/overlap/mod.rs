@@ -22,6 +22,7 @@ mod plane;
 mod rows;
 mod sides;
 mod signs;
+mod touch;
 mod walk;
 
 use crate::base::error::{Error, Result};
@@ -198,7 +199,7 @@ fn check_cells<C: Prepared<D>, const D: usize>(
         for i in first..(first + LOT).min(count) {
             let (cell, own) = cells.cell::<C>(i);
             let crossed = match &cell {
-                Some(cell) => crossing && cell.crossing(watch)?,
+                Some(cell) => crossing && touch::crossing(cell, watch)?,
                 None => false,
             };
             let fault = if crossed { Some(Fault::Crossing) } else { own };

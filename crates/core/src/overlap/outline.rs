@@ -33,8 +33,19 @@ pub enum Fault {
     Opposite = 2,
     /// No hemisphere contains it.
     Large = 3,
-    /// Two of its sides cross.
+    /// Two of its sides cross, or a ring crosses itself where it touches itself.
     Crossing = 4,
+}
+
+/// How two sides of a cell lie to each other.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Lie {
+    /// They have at most the end of one in common, which is the start of the other.
+    Apart,
+    /// They may touch.
+    Touching,
+    /// They cross, or run the same way in a common part.
+    Crossing,
 }
 
 /// Takes the terms of a sum, or the sides of the shared area.
@@ -300,8 +311,8 @@ fn ends_inside<C: Outline<D>, const D: usize>(
 
 /// A cell made of rings.
 pub trait Prepared<const D: usize>: Outline<D> {
-    /// Prepares a cell from its rings, each of which may be a hole. One with a fault may be given for
-    /// [`Self::crossing`] only.
+    /// Prepares a cell from its rings, each of which may be a hole. One with a fault may be given, for
+    /// what its sides do.
     fn of(rings: &mut dyn Iterator<Item = (bool, &[[f64; D]])>) -> (Option<Self>, Option<Fault>);
     /// The area.
     fn area(&self) -> f64;
@@ -309,9 +320,21 @@ pub trait Prepared<const D: usize>: Outline<D> {
     fn turned(&self) -> bool;
     /// Corners that repeat the one before.
     fn repeated(&self) -> usize;
-    /// Whether two sides cross in their interiors or, in a cell without faults, run the same way in a
-    /// common part.
-    fn crossing(&self, watch: &Watch) -> Result<bool>;
+    /// How two sides lie to each other. In a cell with a fault, those that run the same way in a common
+    /// part may touch: parts to both sides of them may cancel.
+    fn lie(&self, e: u32, f: u32) -> Lie;
+    /// Whether one of two sides follows the other one.
+    fn follow(&self, e: u32, f: u32) -> bool {
+        self.next(e) == f || self.next(f) == e
+    }
+    /// Whether two corners are equal.
+    fn equal(&self, k: u32, l: u32) -> bool;
+    /// Whether a corner is in a side, and not at an end of it.
+    fn inside(&self, e: u32, corner: u32) -> bool;
+    /// The order of two corners in a side.
+    fn along(&self, e: u32, k: u32, l: u32) -> Ordering;
+    /// The sign of the turn around a corner from a second one to a third.
+    fn turn(&self, at: u32, from: u32, to: u32) -> i8;
 }
 
 /// The corners of a ring without those that repeat the one before; of several ways to write a corner,

@@ -21,13 +21,15 @@ use delone_predicates::{Point2, Sign, orient2d};
 
 use crate::base::error::Result;
 use crate::base::points::Extent;
-use crate::base::watch::{Pace, Watch};
+use crate::base::watch::Pace;
 use crate::locate::boxes::Boxes;
 
 use super::convex::Pieces;
-use super::outline::{Fault, Met, Outline, Prepared, Sum, Work, distinct, meet, start_at_smallest};
+use super::outline::{
+    Fault, Lie, Met, Outline, Prepared, Sum, Work, distinct, meet, start_at_smallest,
+};
 use super::pairs::{ZERO, pair, quotient};
-use super::sides::{MANY, any_pair, meeting};
+use super::sides::{MANY, meeting};
 use super::signs::Moved;
 
 /// Cells with smaller areas, over the square of their extent, are empty.
@@ -156,13 +158,45 @@ impl Prepared<2> for Region {
         self.repeated
     }
 
-    fn crossing(&self, watch: &Watch) -> Result<bool> {
-        if self.convex {
-            return Ok(false);
+    fn lie(&self, e: u32, f: u32) -> Lie {
+        let ([a, b], [c, d]) = (self.ends(e), self.ends(f));
+        let [s, t] = [c, d].map(|v| orient2d(a, b, v) as i8);
+        if s == 0 && t == 0 {
+            return lie_along(self.ends(e), self.ends(f), self.usable);
         }
-        // Parts to both sides of a crossing may cancel, so that nothing is left.
-        let bad = if self.usable { crosses } else { proper };
-        any_pair(self, |e, f| bad(self.ends(e), self.ends(f)), watch)
+        if s * t > 0 || (s * t == 0 && self.follow(e, f)) {
+            return Lie::Apart;
+        }
+        match orient2d(c, d, a) as i8 * orient2d(c, d, b) as i8 {
+            1 => Lie::Apart,
+            -1 if s * t < 0 => Lie::Crossing,
+            _ => Lie::Touching,
+        }
+    }
+
+    fn equal(&self, k: u32, l: u32) -> bool {
+        self.corners[k as usize].v == self.corners[l as usize].v
+    }
+
+    fn inside(&self, e: u32, corner: u32) -> bool {
+        let ([a, b], v) = (self.ends(e), self.corners[corner as usize].v);
+        let axis = longer([a, b]);
+        let between = (a[axis] < v[axis]) == (v[axis] < b[axis]) && v[axis] != b[axis];
+        between && v[axis] != a[axis] && orient2d(a, b, v) == Sign::Zero
+    }
+
+    fn along(&self, e: u32, k: u32, l: u32) -> Ordering {
+        let ends = self.ends(e);
+        let axis = longer(ends);
+        let [a, b] = ends.map(|v| v[axis]);
+        let [x, y] = [k, l].map(|corner| self.corners[corner as usize].v[axis]);
+        let order = x.total_cmp(&y);
+        if b > a { order } else { order.reverse() }
+    }
+
+    fn turn(&self, at: u32, from: u32, to: u32) -> i8 {
+        let [a, b, c] = [at, from, to].map(|k| self.corners[k as usize].v);
+        orient2d(a, b, c) as i8
     }
 }
 
@@ -189,25 +223,26 @@ impl Region {
     }
 }
 
-/// Whether sides of one cell cross in their interiors, or run the same way in a common part: the
-/// cell would cover what is beside that twice.
-fn crosses([a, b]: [Point2; 2], [c, d]: [Point2; 2]) -> bool {
-    let [s, t] = [c, d].map(|v| orient2d(a, b, v));
-    if s == Sign::Zero && t == Sign::Zero {
-        // Along the coordinate in which the first one is longer; differences may be rounded.
-        let axis = usize::from((b[1] - a[1]).abs() > (b[0] - a[0]).abs());
-        let [a, b, c, d] = [a, b, c, d].map(|v| v[axis]);
-        let up = b > a;
-        let (low, high) = if up { (a, b) } else { (b, a) };
-        return up == (d > c) && c.min(d) < high && low < c.max(d);
-    }
-    proper([a, b], [c, d])
+/// The coordinate in which a side is longer; differences may be rounded.
+fn longer([a, b]: [Point2; 2]) -> usize {
+    usize::from((b[1] - a[1]).abs() > (b[0] - a[0]).abs())
 }
 
-/// Whether sides cross in their interiors.
-fn proper([a, b]: [Point2; 2], [c, d]: [Point2; 2]) -> bool {
-    let apart = |a, b, c, d| orient2d(a, b, c) as i8 * orient2d(a, b, d) as i8 == -1;
-    apart(a, b, c, d) && apart(c, d, a, b)
+/// How sides on one line lie to each other. A cell with an area would cover what is beside a part that
+/// both run along in the same direction twice.
+fn lie_along(first: [Point2; 2], second: [Point2; 2], usable: bool) -> Lie {
+    let axis = longer(first);
+    let ([a, b], [c, d]) = (first.map(|v| v[axis]), second.map(|v| v[axis]));
+    let (low, high) = (a.min(b), a.max(b));
+    if c.max(d) < low || high < c.min(d) {
+        return Lie::Apart;
+    }
+    let common = c.min(d) < high && low < c.max(d);
+    if usable && common && (b > a) == (d > c) {
+        Lie::Crossing
+    } else {
+        Lie::Touching
+    }
 }
 
 /// The side of a line on which a corner is, without ties.

@@ -88,13 +88,13 @@ fn tree<'a, C: Outline<D>, const D: usize>(cell: &'a C, watch: &Watch) -> Result
     Ok(kept.get_or_init(|| tree))
 }
 
-/// Whether `bad` is true of a pair of sides whose boxes meet.
+/// Whether `bad` is true of a pair of sides whose boxes meet; it may be asked for a pair twice.
 ///
 /// A sweep along the longest side of the cell's box finds the pairs, unless many meet in that
 /// coordinate alone.
 pub fn any_pair<C: Outline<D>, const D: usize>(
     cell: &C,
-    bad: impl Fn(u32, u32) -> bool,
+    mut bad: impl FnMut(u32, u32) -> Result<bool>,
     watch: &Watch,
 ) -> Result<bool> {
     let count = cell.count();
@@ -117,8 +117,10 @@ pub fn any_pair<C: Outline<D>, const D: usize>(
         }
         left -= met;
         pace.spend(met + 1)?;
-        if later[..met].iter().any(|&(_, _, f)| bad(e, f)) {
-            return Ok(true);
+        for &(_, _, f) in &later[..met] {
+            if bad(e, f)? {
+                return Ok(true);
+            }
         }
     }
     Ok(false)
@@ -127,7 +129,7 @@ pub fn any_pair<C: Outline<D>, const D: usize>(
 /// The same by a tree.
 fn any_pair_by_boxes<C: Outline<D>, const D: usize>(
     cell: &C,
-    bad: impl Fn(u32, u32) -> bool,
+    mut bad: impl FnMut(u32, u32) -> Result<bool>,
     mut pace: Pace,
 ) -> Result<bool> {
     let mut found = Vec::new();
@@ -135,8 +137,10 @@ fn any_pair_by_boxes<C: Outline<D>, const D: usize>(
         found.clear();
         meeting(cell, &cell.reach(e), &mut found, pace.watch())?;
         pace.spend(found.len() + 1)?;
-        if found.iter().any(|&f| f > e && bad(e, f)) {
-            return Ok(true);
+        for &f in found.iter().filter(|&&f| f > e) {
+            if bad(e, f)? {
+                return Ok(true);
+            }
         }
     }
     Ok(false)
