@@ -35,6 +35,12 @@ RIGHT = {
     "a hole at a side": (Polygon(OUTER, [[(0, 2), (4, 2), (4, 4), (0, 4)]]), 92),
     "holes with a common side": (Polygon(OUTER, [quad(2, 2, 4, 4), quad(4, 2, 6, 4)]), 92),
     "a hole that is all": (Polygon(OUTER, [OUTER]), 0),
+    "a part without area and its hole": (
+        MultiPolygon(
+            [Polygon([(20, 0), (26, 0), (22, 0)], [[(0, -20), (0, -26), (0, -22)]]), Polygon(OUTER)]
+        ),
+        100,
+    ),
     "a hole without area": (Polygon(OUTER, [[(20, 0), (30, 0), (20, 0)]]), 100),
 }
 BAD = {
@@ -50,6 +56,12 @@ BAD = {
     "a hole around its ring": Polygon(HOLE, [OUTER]),
     "a hole in a hole": Polygon(OUTER, [HOLE, quad(3, 3, 4, 4)]),
     "a hole around a hole": Polygon(OUTER, [quad(3, 3, 4, 4), HOLE]),
+    "a hole of a part without area": MultiPolygon(
+        [Polygon([(20, 0), (30, 0), (25, 0)], [quad(22, 2, 28, 8)]), Polygon(OUTER)]
+    ),
+    "a hole of a ring without area in another part": MultiPolygon(
+        [Polygon(OUTER), Polygon([(2, -9), (8, -9), (4, -9)], [quad(2, 2, 8, 8)])]
+    ),
     "a hole twice in a hole": Polygon(OUTER, [HOLE, quad(3, 3, 4, 4), quad(6, 6, 7, 7)]),
 }  # fmt: skip
 

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ["badly_nested", "nesting_problem"]
 
+# What the core reports for a ring without area.
+_EMPTY = 1
 # Rings of a cell overlap if they share more of the smaller one than this; less is a rounding error.
 _SHARED = 1e-12
 
@@ -76,7 +78,8 @@ def _misplaced(
     whole = shared.areas >= (1 - _SHARED) * known.areas[hole]
     inside = np.zeros(len(own), dtype=np.bool_)
     inside[hole[whole & (own[hole] == shared.indices)]] = True
-    found |= ~inside & (known.faults == 0) & (around.faults[own] == 0)
+    # Also in an outer ring without area.
+    found |= ~inside & (known.faults == 0) & (around.faults[own] <= _EMPTY)
     first, second = _pairs(inner, known.areas, own, workers)
     found[first] = found[second] = True
     return found
