@@ -94,3 +94,14 @@ def test_cells_that_no_window_makes_the_same(dems, command, tmp_path):
     code, _, err = command("difference", dems[0], other)
     assert code == 2
     assert "as a --surface" in err
+
+
+def test_an_error_of_one_file_leaves_none(dems, command, tmp_path, monkeypatch):
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("delone.cli.difference.raster_writer", lambda _: full)
+    png, tif = tmp_path / "d.png", tmp_path / "d.tif"
+    code, _, err = command("difference", dems[0], "4", "-o", png, "-o", tif)
+    assert (code, f"{tif}: No space" in err) == (5, True), err
+    assert not png.exists() and not tif.exists()

@@ -261,3 +261,14 @@ def test_files_without_fields(tmp_path, command):
     code, _, errors = command("regrid", *options)
     assert code != 0
     assert "there are no fields to regrid" in errors
+
+
+def test_an_error_of_one_file_leaves_none(model, tmp_path, command, monkeypatch):
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(sphere.Weights, "to_netcdf", full)
+    out, table = tmp_path / "out.nc", tmp_path / "w.nc"
+    code, _, err = command("regrid", model, "30x30", "-o", out, "--save-weights", table)
+    assert (code, f"{table}: No space" in err) == (5, True), err
+    assert not out.exists() and not table.exists()

@@ -310,3 +310,84 @@ def test_contours_on_the_page_keep_their_ends_and_shapes():
         assert least * len(found.points) <= count <= len(found.points)
         assert size > 0.01 or count == len(found.points)
         assert size < 0.01 or count < 0.8 * len(found.points)
+
+
+def test_an_error_of_a_later_product_leaves_no_file(hill, command, tmp_path, monkeypatch):
+    folder = tmp_path / "site"
+    options = ("terrain", hill, "--contours", 1, "--dem", 4, "-o", folder)
+
+    def fail(*_, **__):
+        raise MemoryError("no room for the page")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(site, "_write_page", fail)
+        code, _, err = command(*options)
+    assert (code, "no room for the page" in err, folder.exists()) == (7, True, False)
+    # A folder with files of an earlier run is unchanged.
+    assert command(*options)[0] == 0
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    hill.write_bytes(hill.read_bytes().replace(b"\n1", b"\n2"))
+    with monkeypatch.context() as patched:
+        patched.setattr(site, "_write_page", fail)
+        assert command(*options)[0] == 7
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        (("--contours", "1", "--dem", "1e-6"), 7, "cells needs"),
+        (("--contours", "1", "--bands", "1e-9"), 4, "levels between the heights"),
+        (("--contours", "1", "--smooth", "9"), 2, "--smooth must be"),
+        (("--contours", "1", "--simplify", "-1"), 2, "--simplify must be"),
+        (("--contours", "1", "--profile", "two.geojson"), 2, "--profile must be one line"),
+    ],
+)
+def test_what_is_known_is_refused_first(hill, command, tmp_path, monkeypatch, case):
+    options, code, text = case
+    two = {"type": "MultiLineString", "coordinates": [[[1, 1], [2, 2]], [[3, 3], [4, 4]]]}
+    (tmp_path / "two.geojson").write_text(json.dumps(two))
+    options = [each.replace("two.geojson", f"{tmp_path}/two.geojson") for each in options]
+
+    def contours(*_, **__):
+        raise AssertionError("work before the check")
+
+    monkeypatch.setattr(TIN, "contours", contours)
+    found, _, err = command("terrain", hill, *options, "-o", tmp_path / "site")
+    assert (found, text in err) == (code, True), err
+    assert "bounds" not in err
+    assert not (tmp_path / "site").exists()
+
+
+def test_errors_of_writing_name_the_folder(hill, command, tmp_path, monkeypatch):
+    def fail(path, *_, **__):
+        raise OSError(28, "No space left on device", str(path))
+
+    monkeypatch.setattr(site, "raster_writer", lambda _: fail)
+    code, _, err = command("terrain", hill, "--dem", 4, "-o", tmp_path / "site")
+    assert (code, f"{tmp_path / 'site' / 'dem.tif'}: " in err) == (5, True), err
+    assert ".delone-" not in err
+    assert not (tmp_path / "site").exists()
+
+
+def test_files_of_earlier_runs_are_named(hill, command, figures, tmp_path):
+    folder, road = tmp_path / "site", tmp_path / "road.gpkg"
+    found = figures("terrain", hill, *COMMON, "--dem", 4, "--profile", road, "-o", folder)
+    assert found["files_of_earlier_runs"] is None
+    (folder / "mine.txt").write_text("kept")
+    options = ("terrain", hill, *COMMON, "--contours", 1, "-o", folder)
+    found = figures(*options)
+    assert found["files_of_earlier_runs"] == ["dem.tif", "profile-road.csv"]
+    code, out, _ = command(*options)
+    assert (code, "dem.tif, profile-road.csv" in out) == (0, True)
+    # An input is no product of an earlier run, and a link is written through.
+    (folder / "contours.gpkg").rename(tmp_path / "lines.gpkg")
+    (folder / "contours.gpkg").symlink_to(tmp_path / "lines.gpkg")
+    before = (tmp_path / "lines.gpkg").stat().st_mtime_ns
+    found = figures(*options, "--quiet", "--volume", folder / "dem.tif")
+    assert found["files_of_earlier_runs"] == ["profile-road.csv"]
+    assert (folder / "contours.gpkg").is_symlink()
+    assert (tmp_path / "lines.gpkg").stat().st_mtime_ns > before
+    assert {path.name for path in folder.iterdir()} == {
+        "contours.gpkg", "dem.tif", "index.html", "mine.txt", "profile-road.csv"
+    }  # fmt: skip

@@ -381,3 +381,15 @@ def test_contours_with_fewer_points(survey, figures, command, tmp_path):
     areas = figures("contours", survey, "--interval", 100, "--simplify", 2, "--bands", "-o", out)
     assert areas["points_of_lines_left_out"] == few["points_of_lines_left_out"]
     assert areas["polygons"] == len(geopandas.read_file(out)) > areas["flat_polygons_left_out"]
+
+
+def test_an_error_of_labels_leaves_no_lines(folder, command, monkeypatch):
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    points, lines, labels = folder / "the points.csv", folder / "a.gpkg", folder / "b.gpkg"
+    monkeypatch.setattr("delone.cli.terrain.write_table", full)
+    options = ("--interval", 5, "-o", lines, "--labels", labels)
+    code, _, err = command("contours", points, *options)
+    assert (code, f"{labels}: No space" in err) == (5, True), err
+    assert not lines.exists() and not labels.exists()

@@ -122,6 +122,8 @@ def _said(error: BaseException, arguments: Sequence[str]) -> int:
         message, code = str(error), error.code
     elif isinstance(error, MemoryError):
         message, code = str(error) or "there is not enough memory", Exit.MEMORY
+        if "bounds" not in options_of(arguments):
+            message = message.removesuffix(", or a part with bounds")
     else:
         message, code = _explained(error, arguments)
     if message:

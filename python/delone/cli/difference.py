@@ -82,7 +82,7 @@ def difference(
         raise Failure(f"{source}: not a raster of heights: .tif .tiff .asc .nc", Exit.USAGE)
     with writing():
         protect_inputs(output or [], source, Path(other))
-        writers = {path: raster_writer(path) for path in output or []}
+        writers = {path: _writer(path) for path in output or []}
         for path in writers:
             check_target(path)
     watch = Stopwatch()
@@ -102,7 +102,7 @@ def difference(
         say("computing the difference")
         with reading(quiet=quiet), noting(quiet=quiet), watch.stage("difference"):
             found = _difference(source, goal, crs=options.crs, units=options.units, **bands)
-        _write(writers, found, watch, say)
+        write_all(writers, found, watch, say, name="difference", crs=found.crs, units=found.units)
     figures = _figures(source, other, found, output or [])
     figures["stages"] = watch.rows(found.values.size)
     of = dict.fromkeys(("cut", "fill", "net"), found.volume_units) | {"area": found.area_units}
@@ -127,22 +127,17 @@ def _difference(source: Path, goal: Any, **options: Any) -> Difference:
         raise Failure(text, Exit.USAGE) from error
 
 
-def _write(
-    writers: dict[Path, Callable[..., None]],
-    found: Difference,
-    watch: Stopwatch,
-    say: Callable[[str], None],
-) -> None:
-    pictures = {path: _draw for path in writers if path.suffix.lower() in (".png", ".svg")}
-    rasters = {path: write for path, write in writers.items() if path not in pictures}
-    write_all(pictures, found, watch, say)
-    write_all(rasters, found, watch, say, name="difference", crs=found.crs, units=found.units)
+def _writer(path: Path) -> Callable[..., None]:
+    """Return what writes a raster, or draws a picture in which cut and fill have colors."""
+    write = raster_writer(path)
+    return _draw if path.suffix.lower() in (".png", ".svg") else write
 
 
-def _draw(path: Path, found: Difference) -> None:
+def _draw(path: Path, found: Difference, *, name: str, crs: str | None, units: str | None) -> None:
     from delone.plot.raster import draw_difference
 
-    draw_difference(path, found.values, found.x, found.y, units=found.units, crs=found.crs)
+    del name
+    draw_difference(path, found.values, found.x, found.y, units=units, crs=crs)
 
 
 def _figures(source: Path, other: str, found: Difference, output: list[Path]) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -183,18 +183,20 @@ def regrid(
             found = _noted(regridder, fields, options, quiet=quiet)
         if outputs:
             _require_fields(regridder, fields, found)
-        for path in outputs:
-            with writing(), watch.stage(f"write {path.name}"), replacing(path) as temporary:
-                if path.suffix.lower() in _IMAGES:
-                    _draw(temporary, regridder, fields, found)
-                else:
-                    unlimited = set(whole.encoding.get("unlimited_dims", ())) & set(found.dims)
-                    found.to_netcdf(temporary, engine="netcdf4", unlimited_dims=unlimited)
-        if save_weights is not None:
-            with writing(), watch.stage(f"write {save_weights.name}"):
-                regridder.weights.to_netcdf(
-                    save_weights, source=regridder.source, target=regridder.target
-                )
+        with writing(), ExitStack() as stack:
+            # All files are complete before the first one is renamed.
+            for path in written:
+                with watch.stage(f"write {path.name}"):
+                    place = stack.enter_context(replacing(path))
+                    if path is save_weights:
+                        regridder.weights.to_netcdf(
+                            place, source=regridder.source, target=regridder.target
+                        )
+                    elif path.suffix.lower() in _IMAGES:
+                        _draw(place, regridder, fields, found)
+                    else:
+                        unlimited = set(whole.encoding.get("unlimited_dims", ())) & set(found.dims)
+                        found.to_netcdf(place, engine="netcdf4", unlimited_dims=unlimited)
         figures = _figures(source, regridder, fields, found) | {
             **watch.ending(written, regridder.target.ncells),
         }

@@ -14,12 +14,12 @@ import numpy as np
 import typer
 
 from delone import __version__
-from delone._base.atomic import replacing
 from delone._base.extras import require
+from delone._base.georeference import CRSWarning
 from delone._base.numbers import as_positive
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import noting
-from delone.cli.outputs import write_all
+from delone.cli.outputs import staged, write_all
 from delone.cli.page import Section, page
 from delone.cli.profiles import (
     SectionOptions,
@@ -48,6 +48,9 @@ from delone.io import read_geometries
 from delone.io.raster import raster_writer
 from delone.plot.lines import plot_lines
 from delone.terrain import difference
+from delone.terrain.contouring import Finish, levels_of
+from delone.terrain.lines import line_of
+from delone.terrain.slopes import extremes, require_room
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -58,6 +61,9 @@ if TYPE_CHECKING:
 __all__ = ["terrain"]
 
 _SHADES = ("hillshade", "slope", "aspect")
+# The names of all files that the command writes, except the page.
+_PRODUCTS = ("contours.gpkg", "bands.gpkg", *(f"{name}.tif" for name in ("dem", *_SHADES)))
+_PROFILES = "profile-*.csv"
 # Cells along the longer side of the map of a page.
 _CELLS = 900
 # Points of one artist; the rasterizer of matplotlib refuses far longer ones.
@@ -72,7 +78,7 @@ class _Product:
     """A product: what is written, what is reported, and how it is drawn."""
 
     name: str
-    files: list[Path]
+    files: list[str]  # names in the folder
     figures: dict[str, Any] = field(default_factory=dict)
     found: Any = None
     goal: float | TIN | None = None  # of a volume
@@ -143,8 +149,9 @@ def terrain(
         raise Failure("--smooth and --min-length are for --contours", Exit.USAGE)
     if contours is None and bands is None and (min_area or simplify):
         raise Failure("--min-area and --simplify are for --contours and --bands", Exit.USAGE)
+    Finish.of(smooth, min_length, min_area, simplify)
     heights = {text: height_of(text) for text in volume or []}
-    products = _wanted(folder, given | {"heights": heights}, shades)
+    products = _wanted(given | {"heights": heights}, shades)
     watch = Stopwatch()
     beside = [*(profile or []), *(Path(text) for text in heights if heights[text] is None)]
     inputs = [source, *beside, *options.inputs()]
@@ -154,56 +161,88 @@ def terrain(
                 read_geometries(path, **curves_of(path, options.chord, aligned=True))
                 for path in profile or []
             ]
+        _require_lines(profile or [], lines)
         tin = surface(source, options, watch, say, others=beside, aligned=bool(profile))
+        _require_room(tin, contours, bands, dem, 1 + len(shades))
         goals = [_goal(text, heights[text], options, watch, say) for text in volume or []]
         given["volume"] = goals
         for product, goal in zip(products[len(products) - len(goals) :], goals, strict=True):
             product.goal = goal
-        for product, compute in zip(products, _computed(tin, given, shades, lines), strict=True):
-            say(f"computing {product.name}")
-            with watch.stage(product.name), noting(quiet=quiet):
-                product.found = compute()
-            _write(product, tin, watch, say)
-        figures = figures_of(source, tin, [each for one in products for each in one.files])
-        say("drawing the page")
-        with watch.stage("page"), noting(quiet=quiet):
-            _write_page(folder / "index.html", source, tin, figures, products)
-    figures["outputs"].append(str(folder / "index.html"))
-    figures["output_bytes"] += (folder / "index.html").stat().st_size
+        computed = _computed(tin, given, shades, lines)
+        with staged(folder) as place:
+            for product, compute in zip(products, computed, strict=True):
+                say(f"computing {product.name}")
+                with watch.stage(product.name), noting(quiet=quiet):
+                    product.found = compute()
+                _write(product, place, tin, watch, say)
+            say("drawing the page")
+            with watch.stage("page"), noting(quiet=quiet):
+                _write_page(place / "index.html", source, tin, products)
+    files = [folder / name for each in products for name in each.files]
+    figures = figures_of(source, tin, [*files, folder / "index.html"])
+    earlier = _earlier(folder, files, inputs)
+    figures["files_of_earlier_runs"] = earlier or None
     figures["products"] = [{"product": each.name} | each.figures for each in products]
     figures["stages"] = watch.rows(tin.npoints)
     more = [row for each in products for row in _rows(each.figures, f"{each.name}: ")]
+    if earlier:
+        more.append(("files of earlier runs", ", ".join(earlier)))
     print_figures(source, figures, as_json=options.as_json, quiet=quiet, more=more)
 
 
-def _write_page(
-    target: Path, source: Path, tin: TIN, figures: dict[str, Any], products: Sequence[_Product]
-) -> None:
+def _write_page(target: Path, source: Path, tin: TIN, products: Sequence[_Product]) -> None:
     # The cells of maps, which several sections show.
     cells = tin.raster(resolution=float((tin.max_bound - tin.min_bound).max()) / _CELLS)
     sections = [
-        _overview(source, tin, figures, cells),
+        _overview(source, tin, cells),
         *(_section(tin, each, cells) for each in products),
     ]
     text = page(source.name, sections, f"Made by delone {__version__}")
-    with writing(), replacing(target) as temporary:
-        temporary.write_text(text, encoding="utf-8", newline="\n")
+    with writing():
+        target.write_text(text, encoding="utf-8", newline="\n")
 
 
-def _wanted(folder: Path, given: dict[str, Any], shades: list[str]) -> list[_Product]:
+def _require_lines(paths: Sequence[Path], lines: Sequence[Any]) -> None:
+    """Reject files that do not have one line before the surface is read."""
+    with warnings.catch_warnings():
+        # The reference system of the surface is unknown before it is read.
+        warnings.simplefilter("ignore", CRSWarning)
+        for path, line in zip(paths, lines, strict=True):
+            line_of(line, name=f"{path}: --profile", crs=None)
+
+
+def _require_room(
+    tin: TIN, contours: float | None, bands: float | None, dem: float | None, rasters: int
+) -> None:
+    """Reject too many levels and too many cells before the first product is computed."""
+    for interval in (contours, bands):
+        if interval is not None:
+            levels_of(partial(extremes, tin), None, interval, 0.0, 1)
+    if dem is not None:
+        require_room(tin, dem, rasters)
+
+
+def _earlier(folder: Path, files: Sequence[Path], inputs: Sequence[Path]) -> list[str]:
+    """Return the names of products in the folder that this run has not written."""
+    own = {path.resolve() for path in (*files, *inputs)}
+    old = [folder / name for name in _PRODUCTS] + sorted(folder.glob(_PROFILES))
+    return [path.name for path in old if path.is_file() and path.resolve() not in own]
+
+
+def _wanted(given: dict[str, Any], shades: list[str]) -> list[_Product]:
     """Return the requested products, in the order in which they are computed."""
     for name in ("contours", "bands", "dem"):
         if given[name] is not None:
             as_positive(given[name], name=f"--{name}", finite=True)
     found = [
-        _Product(name, [folder / f"{name}.gpkg"])
+        _Product(name, [f"{name}.gpkg"])
         for name in ("contours", "bands")
         if given[name] is not None
     ]
     if given["dem"] is not None:
-        found += [_Product(name, [folder / f"{name}.tif"]) for name in ("dem", *shades)]
+        found += [_Product(name, [f"{name}.tif"]) for name in ("dem", *shades)]
     for name in _distinct([path.stem for path in given["profile"] or []]):
-        found.append(_Product(f"profile {name}", [folder / f"profile-{name}.csv"]))
+        found.append(_Product(f"profile {name}", [f"profile-{name}.csv"]))
     found += _volumes(given["volume"] or [], given["heights"])
     if not found:
         raise Failure(
@@ -266,7 +305,7 @@ def _folder(folder: Path, products: Sequence[_Product], inputs: list[Path]) -> I
 
 def _check(folder: Path, products: Sequence[_Product], inputs: list[Path]) -> None:
     """Check that all files can be written before any work is done."""
-    files = [path for product in products for path in product.files]
+    files = [folder / name for product in products for name in product.files]
     protect_inputs([*files, folder / "index.html"], *inputs)
     with writing():
         for path in files:
@@ -297,11 +336,14 @@ def _computed(
     return found
 
 
-def _write(product: _Product, tin: TIN, watch: Stopwatch, say: Callable[[str], None]) -> None:
+def _write(
+    product: _Product, place: Path, tin: TIN, watch: Stopwatch, say: Callable[[str], None]
+) -> None:
     """Write the file of a product as its separate command does, and keep its figures."""
     found, name = product.found, product.name
+    files = [place / each for each in product.files]
     if name in ("contours", "bands"):
-        write_lines(found, product.files, watch, name)
+        write_lines([(found, files, name)], watch)
         what = "lines" if name == "contours" else "polygons"
         levels = found.level if name == "contours" else found.low
         left_out = {
@@ -319,7 +361,7 @@ def _write(product: _Product, tin: TIN, watch: Stopwatch, say: Callable[[str], N
     elif name in ("dem", *_SHADES):
         measure = "height" if name == "dem" else name
         unit = {"dem": tin.units, "slope": "degrees", "aspect": "degrees"}.get(name)
-        writers = {path: raster_writer(path) for path in product.files}
+        writers = {path: raster_writer(path) for path in files}
         write_all(writers, found, watch, say, name=measure, crs=tin.crs, units=unit)
         known = found.values[np.isfinite(found.values)]
         product.figures = {
@@ -335,7 +377,7 @@ def _write(product: _Product, tin: TIN, watch: Stopwatch, say: Callable[[str], N
             for each in ("cut", "fill", "net", "area", "volume_units", "area_units")
         }
     else:
-        write_profile(found, product.files, watch, _NO_SECTIONS)
+        write_profile(found, files, watch, _NO_SECTIONS)
         product.figures = profile_figures(found)
 
 
@@ -354,9 +396,10 @@ def _rows(figures: dict[str, Any], before: str = "") -> list[tuple[str, str]]:
     return rows
 
 
-def _overview(source: Path, tin: TIN, figures: dict[str, Any], cells: Grid) -> Section:
+def _overview(source: Path, tin: TIN, cells: Grid) -> Section:
     """Return the section on the surface itself: a shaded map, colored by height."""
     low, high = float(tin.z.min()), float(tin.z.max())
+    figures = figures_of(source, tin, [])
     told = {key: value for key, value in figures.items() if key not in _NOT_TOLD}
     bounds = np.stack((tin.min_bound, tin.max_bound)).T.tolist()
     told |= {
@@ -376,7 +419,7 @@ _NOT_TOLD = ("input", "delone", "outputs", "output_bytes", "peak_memory_bytes")
 def _section(tin: TIN, product: _Product, cells: Grid) -> Section:
     """Return the section on a product; `cells` are the heights on maps."""
     found, name = product.found, product.name
-    files, rows = [path.name for path in product.files], _rows(product.figures)
+    files, rows = product.files, _rows(product.figures)
     title = {"dem": "DEM"}.get(name, name[:1].upper() + name[1:])
     draw: Callable[[Any], Any] = found.plot if hasattr(found, "plot") else found
     wide, high, alt = 6.0, None, f"Map of the {title}"

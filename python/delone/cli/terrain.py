@@ -58,7 +58,7 @@ from delone.terrain import TIN, Contours, Volumes
 from delone.terrain.contouring import MOST
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from delone.distributed import TiledDelaunay
     from delone.terrain import Bands, Volume
@@ -162,10 +162,13 @@ def contours(
             with watch.stage("contours"):
                 made = draw(wanted, simplify=simplify, **how)
             say(f"writing {len(made):,} {'polygons' if bands else 'lines'}")
-            write_lines(made, output or [], watch, "bands" if bands else "contours")
-            texts = None if labels is None else made.labels(length=label_length)
-            if texts is not None:
-                write_lines(texts, [labels] if labels else [], watch, "labels")
+            layers: list[tuple[Any, list[Path], str]] = [
+                (made, output or [], "bands" if bands else "contours")
+            ]
+            if labels is not None:
+                texts = made.labels(length=label_length)
+                layers.append((texts, [labels], "labels"))
+            write_lines(layers, watch)
             found = _Drawn.of(made)
     what = "polygons" if bands else "lines"
     written = [*(output or []), *([] if labels is None else [labels])]
@@ -472,17 +475,21 @@ def write_contours(target: Path, parts: Iterable[Contours], layer: str) -> None:
     write_line_layer(target, blocks, layer=layer, crs=first.crs, dtypes=dtypes)
 
 
-def write_lines(found: Any, output: list[Path], watch: Stopwatch, layer: str) -> None:
-    """Write contours, bands or labels to tables, contours also to drawings."""
-    rows: Any = None
+def write_lines(layers: Sequence[tuple[Any, list[Path], str]], watch: Stopwatch) -> None:
+    """Write contours, bands or labels, each with its files and the name of its layer.
+
+    Tables, for contours also drawings. All files are complete before the first one is renamed.
+    """
     with writing(), ExitStack() as stack:
-        for path in output:
-            with watch.stage(f"write {path.name}"):
-                target = stack.enter_context(replacing(path))
-                if path.suffix.lower() == ".dxf":
-                    write_drawing(target, found)
-                elif isinstance(found, Contours) and _takes_arrays(path):
-                    write_contours(target, [found], layer)
-                else:
-                    rows = found.to_geopandas() if rows is None else rows
-                    write_table(rows, target, layer=layer)
+        for found, output, layer in layers:
+            rows: Any = None
+            for path in output:
+                with watch.stage(f"write {path.name}"):
+                    target = stack.enter_context(replacing(path))
+                    if path.suffix.lower() == ".dxf":
+                        write_drawing(target, found)
+                    elif isinstance(found, Contours) and _takes_arrays(path):
+                        write_contours(target, [found], layer)
+                    else:
+                        rows = found.to_geopandas() if rows is None else rows
+                        write_table(rows, target, layer=layer)

@@ -29,6 +29,7 @@ __all__ = [
     "measure",
     "normals",
     "raster",
+    "require_room",
     "slope",
 ]
 
@@ -173,9 +174,22 @@ def _nodes(tin: Surface, options: dict[str, Any]) -> tuple[Floats, Floats]:
         raise InputError(
             f"{', '.join(sorted(unknown))}: give resolution, shape and bounds, or x and y"
         )
+    return raster_nodes(_box(tin), **options)
+
+
+def require_room(tin: Surface, resolution: float, count: int) -> None:
+    """Raise what `raster` would raise about cells of this size, for several rasters at a time."""
+    raster_nodes(
+        _box(tin),
+        resolution=resolution,
+        room=lambda columns, rows: require_memory(columns, rows, count),
+    )
+
+
+def _box(tin: Surface) -> tuple[list[float], list[float]]:
+    """Return the smallest and the largest coordinates of a surface."""
     corners = tin.points[on_surface(tin)]
-    low, high = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
-    return raster_nodes((low, high), **options)
+    return corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
 
 
 def cells_of(dem: Any) -> tuple[Floats, Floats, Floats]:
