@@ -248,8 +248,9 @@ def test_nan_names_the_feature(tmp_path, command):
     assert err == f"delone: {file}: NaN or infinity in features 1\n"
 
 
-def test_collections_and_missing_geometries(tmp_path, figures):
+def test_collections_and_missing_geometries(tmp_path, figures, command):
     file = save(tmp_path / "a.gpkg", [shapely.GeometryCollection([TOWN, ROAD]), None, TOWN])
-    found = figures("triangulate", file)
+    found = figures("triangulate", file, "--quiet")
     assert found["points"] == 3
     assert (found["constraints"]["features"], found["constraints"]["segments"]) == (3, 1)
+    assert "a.gpkg: 1 of 3 features has no geometry" in command("triangulate", file)[2]

@@ -4,9 +4,11 @@ import ast
 import errno
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +16,9 @@ import pytest
 
 import delone
 from delone import InternalError, __version__
-from delone.cli.exits import MEANINGS, Exit, as_options
+from delone.cli.commands import COMMANDS, _loaded, options_of
+from delone.cli.exits import MEANINGS, Exit
+from delone.cli.wording import ARGUMENTS, Switch, as_options
 
 COMMAND = [sys.executable, "-m", "delone"]
 
@@ -301,7 +305,9 @@ def test_attributes_of_exceptions_are_left_to_python(tmp_path, command):
         delone.Delaunay([(0, 0), (1, 1), (2, 2)])
     # The rest of such a message stays.
     said = "bad; `error.rows` has them, in order; choose nan='drop'"
-    assert as_options(said) == "bad; choose --nan drop"
+    assert as_options(said, {"nan": Switch("--nan")}) == "bad; choose --nan drop"
+    # A command without the option does not advise it.
+    assert as_options(said, {"max_edge": Switch("--max-edge")}) == "bad"
 
 
 TABLE = "x,y,z\n# a survey\n0,0,1\n\n1,{},2\n0,1,3\n0,1,4\n"
@@ -371,12 +377,120 @@ def test_a_run_that_exists_is_resumed_by_an_option(tmp_path, monkeypatch, comman
 
 
 def test_words_that_are_no_arguments_stay():
-    options = {"index": "--index", "interval": "--interval", "max_edge": "--max-edge"}
-    said = "the index of a.interval is empty; max_edge, interval=2 or index=False"
-    wanted = "the index of a.interval is empty; --max-edge, --interval 2 or --no-index"
+    options = {
+        "index": Switch("--index"),
+        "interval": Switch("--interval"),
+        "max_edge": Switch("--max-edge"),
+        "voids": Switch("--voids", "no --voids"),
+    }
+    said = "the index of a.interval is empty; max_edge, interval=2 or voids=False"
+    wanted = "the index of a.interval is empty; --max-edge, --interval 2 or no --voids"
     assert as_options(said, options) == wanted
     assert as_options("index: 1 is too few", options) == "--index: 1 is too few"
     assert as_options("interval of two", options) == "interval of two"
+    # What the user has written stays.
+    said = "a max_edge=2.csv: give max_edge=2"
+    wanted = "a max_edge=2.csv: give --max-edge 2"
+    assert as_options(said, options, keep=["a max_edge=2.csv"]) == wanted
+    # Messages of the command itself may contain names of columns with an underscore.
+    assert as_options("its columns are max_edge", options, words=False).endswith(" max_edge")
+
+
+def _switches():
+    """Each long option of each command."""
+    for name in COMMANDS:
+        for each in _loaded(name).params:
+            for option in each.opts:
+                if option.startswith("--") and not option.startswith("--no-"):
+                    yield pytest.param(name, option, each, id=f"{name} {option}")
+
+
+@pytest.mark.parametrize(("name", "option", "parameter"), list(_switches()))
+def test_every_argument_becomes_its_option(name, option, parameter):
+    options, argument = options_of([name]), option[2:].replace("-", "_")
+    of = partial(as_options, options=options)
+    off = next(iter(parameter.secondary_opts), f"no {option}")
+    if parameter.is_flag:
+        assert of(f"give {argument}=True, or {argument}=False") == f"give {option}, or {off}"
+    elif argument != "bounds" or "window" not in options:
+        for value, shown in {
+            "2": "2", "-1.5e-7": "-1.5e-7", "-inf": "-inf", "nan": "nan", "'a'": "a",
+            "'a' or 'b'": "a or b", '"a", "b" or "c-d"': "a, b or c-d", "(1, -2.5)": "1,-2.5",
+        }.items():  # fmt: skip
+            assert of(f"so give {argument}={value}.") == f"so give {option} {shown}."
+            assert of(f"it is {argument}={value}: so") == f"it is {option} {shown}: so"
+    for after in ("must be above 0, got -1.0", "needs another", "is for others"):
+        assert of(f"{argument} {after}") == f"{option} {after}"
+    assert of(f"{argument}: 2 is bad") == f"{option}: 2 is bad"
+    # An ordinary word that has the name of the option stays.
+    if "_" not in argument:
+        assert of(f"the {argument} of this") == f"the {argument} of this"
+
+
+def _messages():
+    """Each argument with an equals sign in a message of the package, with its file."""
+    root = Path(delone.__file__).parent
+    for path in sorted(root.rglob("*.py")):
+        room = path.relative_to(root).parts[0]
+        if room in ("cli", "compat", "explorer") or path.name == "landxml_writing.py":
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            # Texts of several lines are documentation, those in angle brackets representations.
+            said = node.value if isinstance(node, ast.Constant) else None
+            if isinstance(said, str) and " " in said and not re.search(r"\n|^<|^, \w+=$", said):
+                for found in re.finditer(r"(?<![\w.-])([a-z_]\w*)=(?!=)", said):
+                    yield found[1], f"{path.name}: {said}"
+
+
+def test_every_argument_in_messages_is_known():
+    known = set(ARGUMENTS).union(*(options_of([name]) for name in COMMANDS))
+    messages = list(_messages())
+    assert len(messages) > 50
+    assert [said for name, said in messages if name not in known] == []
+
+
+def test_advice_that_a_command_cannot_follow_is_left_out():
+    nan = "values: 1 of 9 is NaN; first: 3; choose nan='drop' or nan='propagate'; line 4 of a.csv"
+    assert (
+        as_options(nan, options_of(["hull"])) == "values: 1 of 9 is NaN; first: 3; line 4 of a.csv"
+    )
+    few = 'too few points, or if these are three points, pass flat="project"'
+    assert as_options(few, options_of(["hull"])) == "too few points"
+    rings = 'do rings run the other way? winding="smaller" takes the smaller side'
+    assert as_options(rings, options_of(["regrid"])) == "do rings run the other way?"
+    # Nothing is left out where no option is known, nor a whole message.
+    assert as_options(nan, {}) == nan
+    assert as_options("flat='project' is bad", options_of(["hull"])) == "flat='project' is bad"
+
+
+@pytest.mark.parametrize(
+    ("name", "said", "wanted"),
+    [
+        ("contours", "is: give nodata=-9 (--nodata) or", "is: give --nodata -9 or"),
+        ("contours", "no cell is inside bounds=(1.0, 2.0)", "no cell is inside --window 1.0,2.0"),
+        ("dem", "no cell is inside bounds=(1.0, 2.0)", "no cell is inside --window 1.0,2.0"),
+        ("interpolate", "bounds=(1.0, 2.0)", "--bounds 1.0,2.0"),
+        ("interpolate", "choose kind='laplace'", "choose --method laplace"),
+        ("contours", "Read it with order='enz' (--easting-first for 'enz')",
+         "Read it with --easting-first"),
+        ("contours", "faces=False (--retriangulate) is", "--retriangulate is"),
+        ("tetrahedralize", "holes: 1 seed", "--hole: 1 seed"),
+        ("regrid", "give degrees=True or degrees=False", "give --degrees or --radians"),
+        ("tile", "remove it, or use resume=True", "remove it, or use --resume"),
+        ("dem", "choose larger cells, or a part with bounds",
+         "choose larger cells, or a part with --bounds"),
+        ("terrain", "choose larger cells, or a part with bounds", "choose larger cells"),
+        ("contours", "it has 3 bands: choose one with band (--layer), from 1",
+         "it has 3 bands: choose one with --layer, from 1"),
+        ("contours", "several layers; choose one (--layer): a",
+         "several layers; choose one (--layer): a"),
+        ("ground", "several layers; choose one (--layer): a",
+         "several layers; only one can be read: a"),
+        ("contours", "at most 9 are read (max_points): leave", "at most 9 are read: leave"),
+    ],
+)  # fmt: skip
+def test_arguments_with_options_of_other_names(name, said, wanted):
+    assert as_options(said, options_of([name])) == wanted
 
 
 def test_rows_of_other_files_have_none(tmp_path, command):

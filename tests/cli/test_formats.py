@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
@@ -130,3 +132,117 @@ def test_long_names_of_columns_are_shortened_with_a_note(folder, command):
     assert code == 0 and "the column 'region_area' is written as 'region_are'" in notes
     table = geopandas.read_file("v.shp")
     assert table[["name_of_th", "name_of_t2"]].values.tolist() == [["x", "y"]]
+
+
+@pytest.fixture
+def missing(tmp_path):
+    """A file of features without geometries, one with some of them, and points with heights."""
+    square = {"type": "Polygon", "coordinates": [[[3, 3], [6, 3], [6, 6], [3, 6], [3, 3]]]}
+    empty = {"type": "LineString", "coordinates": []}
+    for name, geometries in {"none": [None, None], "some": [None, square, empty]}.items():
+        features = [
+            {"type": "Feature", "properties": {"n": 1}, "geometry": each} for each in geometries
+        ]
+        text = json.dumps({"type": "FeatureCollection", "features": features})
+        (tmp_path / f"{name}.geojson").write_text(text)
+    points = np.random.default_rng(2).random((40, 3)) * 4
+    points[:4, :2] = [(0, 0), (9, 0), (9, 9), (0, 9)]
+    np.savetxt(tmp_path / "p.csv", points, delimiter=",", header="x,y,z", comments="")
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("call", "code"),
+    [
+        ("contours p.csv --interval 1 --breaklines", 0),
+        ("contours p.csv --interval 1 --soft-breaklines", 0),
+        ("contours p.csv --interval 1 --boundary", 2),
+        ("contours p.csv --interval 1 --level", 2),
+        ("dem p.csv -r 1 -o a.tif --breaklines", 0),
+        ("volume p.csv 1 --region", 2),
+        ("volume p.csv 1 --regions", 0),
+        ("profile p.csv", 2),
+        ("terrain p.csv -o site --profile", 2),
+        ("terrain p.csv -o site --contours 1 --breaklines", 0),
+        ("voronoi p.csv --clip", 3),
+        ("mesh", 4),
+        ("areal --planar some.geojson", 0),
+    ],
+)
+def test_features_without_a_geometry_are_noted(missing, command, monkeypatch, call, code):
+    monkeypatch.chdir(missing)
+    name, *others = call.split()
+    found, _, err = command(name, *others, "none.geojson")
+    assert found == code, err
+    assert "note: none.geojson: 2 of 2 features have no geometry\n" in err
+    # What is wrong is said in the words of the command.
+    assert "GeometrySet" not in err and "geometry=" not in err
+    found, _, err = command(name, *others, "some.geojson", "--quiet")
+    assert "note: " not in err
+    found, _, err = command(name, *others, "some.geojson")
+    assert "note: some.geojson: 2 of 3 features have no geometry\n" in err
+
+
+def test_points_without_a_geometry_are_refused(missing, command, monkeypatch):
+    monkeypatch.chdir(missing)
+    for call in ("triangulate", "hull", "graph", "info", "explore"):
+        code, _, err = command(call, "none.geojson")
+        assert code == 3
+        assert err == (
+            "delone: none.geojson: feature 0 has no geometry; points are required. 2 of 2 "
+            "features are not points\n"
+        )
+    code, _, err = command("triangulate", "some.geojson", "--outline")
+    assert code == 0
+    assert "note: some.geojson: 2 of 3 features have no geometry\n" in err
+
+
+@pytest.mark.parametrize(
+    ("call", "advice"),
+    [
+        ("contours two.gpkg --interval 1", "choose one (--layer): a, b"),
+        ("contours p.csv --interval 1 --breaklines two.gpkg", "only one can be read: a, b"),
+        ("contours p.csv --interval 1 --boundary two.gpkg", "only one can be read: a, b"),
+        ("contours p.csv --interval 1 --level two.gpkg", "only one can be read: a, b"),
+        ("profile p.csv two.gpkg", "only one can be read: a, b"),
+        ("profile p.csv none.geojson --other two.gpkg", "choose one (--other-layer): a, b"),
+        ("terrain p.csv -o site --profile two.gpkg", "only one can be read: a, b"),
+        ("volume p.csv two.gpkg", "choose one (--other-layer): a, b"),
+        ("volume p.csv 1 --region two.gpkg", "only one can be read: a, b"),
+        ("volume p.csv 1 --regions two.gpkg", "choose one (--regions-layer): a, b"),
+        ("voronoi p.csv --clip two.gpkg", "only one can be read: a, b"),
+        ("voronoi two.gpkg", "choose one (--layer): a, b"),
+        ("areal two.gpkg some.geojson", "choose one (--layer): a, b"),
+        ("areal some.geojson two.gpkg", "choose one (--target-layer): a, b"),
+        ("mesh two.gpkg", "choose one (--layer): a, b"),
+        ("triangulate two.gpkg", "choose one (--layer): a, b"),
+        ("tile two.gpkg -o tiles", "only one can be read: a, b"),
+        ("difference two.tif 1", "two.tif has 2 bands: choose one with --layer, from 1"),
+        ("difference two.tif two.tif --layer 1", None),
+        ("contours two.tif --interval 1", "two.tif has 2 bands: choose one with --layer, from 1"),
+    ],
+)
+def test_layers_are_chosen_by_options_that_exist(missing, command, monkeypatch, call, advice):
+    monkeypatch.chdir(missing)
+    table = geopandas.GeoDataFrame(geometry=[shapely.box(0, 0, 4, 4)], crs="EPSG:28992")
+    for layer in "ab":
+        table.to_file("two.gpkg", layer=layer)
+    rasterio = pytest.importorskip("rasterio")
+    size = {"width": 3, "height": 3, "count": 2, "dtype": "float64"}
+    transform = rasterio.transform.from_origin(0, 3, 1, 1)
+    with rasterio.open("two.tif", "w", driver="GTiff", transform=transform, **size) as file:
+        file.write(np.random.default_rng(0).random((2, 3, 3)))
+    code, _, err = command(*call.split())
+    if advice is None:
+        assert (code, err) == (0, "")
+    else:
+        assert (code, err.strip().endswith(advice)) == (3, True), err
+
+
+def test_a_bad_outline_is_repaired_by_an_option(missing, command, monkeypatch):
+    monkeypatch.chdir(missing)
+    bow = {"type": "Polygon", "coordinates": [[[0, 0], [9, 9], [9, 0], [0, 9], [0, 0]]]}
+    (missing / "fix=True.geojson").write_text(json.dumps(bow))
+    code, _, err = command("voronoi", "p.csv", "--clip", "fix=True.geojson", "--planar")
+    assert (code, err.endswith("; repair it, or pass --fix\n")) == (3, True), err
+    assert "fix=True.geojson: " in err

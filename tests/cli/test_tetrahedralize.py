@@ -121,7 +121,7 @@ def test_surfaces_that_cannot_be_filled(tmp_path, command):
         (("--hole", "1,2,nan"), "--hole takes 3 numbers"),
         (("--region", "1,2,3"), "--region takes 4 numbers"),
         (("--region", "1,2,3,x"), "--region takes 4 numbers"),
-        (("--hole", "9,9,9"), "holes: 1 seed outside"),
+        (("--hole", "9,9,9"), "--hole: 1 seed outside"),
         (("--inside", "odd"), "inside must be one of"),
         (("-o", "a.svg"), "cannot store tetrahedra"),
         (("-o", "a.su2", "--order", "2"), ".su2 files cannot store second-order elements"),

@@ -17,7 +17,8 @@ import typer
 from delone import __version__
 from delone._base.counting import agreed
 from delone.cli.commands import Commands, options_of
-from delone.cli.exits import MEANINGS, Exit, Failure, as_options, code_of, os_message
+from delone.cli.exits import MEANINGS, Exit, Failure, code_of, os_message
+from delone.cli.wording import CALLED, as_options
 from delone.errors import MissingExtraError, NonFiniteError, OutputError
 
 if TYPE_CHECKING:
@@ -67,6 +68,7 @@ def run(arguments: Sequence[str]) -> int:
     main = threading.current_thread() is threading.main_thread()
     before = signal.signal(signal.SIGTERM, _terminated) if main else None
     _prepare_streams()
+    called = CALLED.set(arguments)
     try:
         # typer reports errors in the command line itself, and Ctrl-C must not become its Abort.
         code = typer.main.get_command(app).main(
@@ -80,6 +82,7 @@ def run(arguments: Sequence[str]) -> int:
     except BaseException as error:
         return _said(error, arguments)
     finally:
+        CALLED.reset(called)
         if before is not None:
             signal.signal(signal.SIGTERM, before)
 
@@ -119,11 +122,12 @@ def _said(error: BaseException, arguments: Sequence[str]) -> int:
     elif isinstance(error, KeyboardInterrupt | typer.Abort):
         message, code = "interrupted", Exit.INTERRUPTED
     elif isinstance(error, Failure):
+        # Its own words are those of the command; those of a file error may not be.
         message, code = str(error), error.code
+        message = as_options(message, options_of(arguments), keep=arguments, words=False)
     elif isinstance(error, MemoryError):
         message, code = str(error) or "there is not enough memory", Exit.MEMORY
-        if "bounds" not in options_of(arguments):
-            message = message.removesuffix(", or a part with bounds")
+        message = as_options(message, options_of(arguments), keep=arguments)
     else:
         message, code = _explained(error, arguments)
     if message:
@@ -139,7 +143,7 @@ def _explained(error: BaseException, arguments: Sequence[str]) -> tuple[str, Exi
     if isinstance(error, OutputError):
         message = os_message(error)
     else:
-        message = as_options(str(error), options_of(arguments))
+        message = as_options(str(error), options_of(arguments), keep=arguments)
     if isinstance(error, NonFiniteError) and not re.search(r"first: \d|infinite: row \d", message):
         more = ", ..." if error.count > len(error.rows) else ""
         noun = agreed(error.count, "row", "rows")

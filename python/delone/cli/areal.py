@@ -14,6 +14,7 @@ from delone._base.atomic import check_target, replacing
 from delone._base.counting import counted
 from delone._base.extras import require
 from delone._base.georeference import is_geographic, same_crs
+from delone.cli.constraints import geometries_of
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import note
 from delone.cli.options import Json, Quiet, Workers, outputs, split
@@ -21,7 +22,6 @@ from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none
 from delone.cli.show import show_figures, spinner
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
-from delone.io import read_geometries
 
 if TYPE_CHECKING:
     from delone.cli.show import Row
@@ -123,7 +123,8 @@ def areal(
         with reading(quiet=quiet), watch.stage("read"):
             muted = planar or project is not None
             one = _layer(source, layer, crs, planar=muted, quiet=quiet)
-            two = _layer(target, target_layer, target_crs, planar=muted, quiet=quiet)
+            with reading(quiet=quiet, layer="--target-layer"):
+                two = _layer(target, target_layer, target_crs, planar=muted, quiet=quiet)
             _require_columns(one, methods)
             layers = _layers(one, two, project, planar=planar)
         say("computing areas")
@@ -182,7 +183,7 @@ def _layer(
     path: Path, name: str | None, crs: str | None, *, planar: bool, quiet: bool
 ) -> GeometrySet:
     """Return a layer with all columns; print a note if coordinates look like degrees."""
-    layer = read_geometries(path, layer=name, attributes="all")
+    layer = geometries_of(path, layer=name, attributes="all")
     system = layer.crs if crs is None else crs
     # Layers that declare degrees are rejected later.
     known = system is not None and is_geographic(system)

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import typer
 from typer.core import TyperGroup
 
+from delone.cli.wording import Switch
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -212,11 +214,21 @@ def _loaded(name: str) -> Any:
     return typer.main.get_command(alone)
 
 
-def options_of(arguments: Sequence[str]) -> dict[str, str]:
+def options_of(arguments: Sequence[str]) -> dict[str, Switch]:
     """Return the options of the command that is called, by the names of arguments in Python."""
     name = next((each for each in arguments if each in COMMANDS), None)
     if name is None:
         return {}
-    options = [option for each in _loaded(name).params for option in each.opts]
-    long = [option for option in options if option.startswith("--")]
-    return {option[2:].replace("-", "_"): option for option in long}
+    found: dict[str, Switch] = {}
+    for each in _loaded(name).params:
+        long = [option for option in each.opts if option.startswith("--")]
+        off = next(iter(each.secondary_opts), None)
+        for option in long:
+            plain = option[2:].replace("-", "_")
+            if not getattr(each, "is_flag", False):
+                found[plain] = Switch(option)
+            elif plain.startswith("no_"):
+                found[plain[3:]] = Switch(f"no {option}", option)
+            else:
+                found[plain] = Switch(option, off or f"no {option}")
+    return found

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from delone import Delaunay, from_geometry
+from delone._base.counting import counted
+from delone._base.extras import require
 from delone.cli.exits import Exit, Failure
 from delone.errors import CrossingSegmentsError, NonFiniteError
-from delone.io import GeometrySet, read_geometries, read_points, read_surface
+from delone.io import GeometrySet, LeftOutWarning, read_geometries, read_points, read_surface
 from delone.io.registry import holds_geometries, holds_surface
 
 if TYPE_CHECKING:
@@ -22,7 +25,14 @@ if TYPE_CHECKING:
     from delone.cli.report import Mesh
     from delone.io import PointSet
 
-__all__ = ["Constraints", "constraint_figures", "constraint_rows", "read_input", "triangulated"]
+__all__ = [
+    "Constraints",
+    "constraint_figures",
+    "constraint_rows",
+    "geometries_of",
+    "read_input",
+    "triangulated",
+]
 
 _FIRST = 3
 
@@ -45,6 +55,26 @@ class Constraints(NamedTuple):
 
     def _is_given(self, name: str) -> bool:
         return getattr(self, name) not in (None, False)
+
+
+def geometries_of(path: Path, **options: Any) -> GeometrySet:
+    """Read lines and polygons, and warn about features without a geometry."""
+    found = read_geometries(path, **options)
+    _warn_of_missing(found)
+    return found
+
+
+def _warn_of_missing(found: GeometrySet) -> None:
+    shapely = require("shapely", extra="geo", what="geometries")
+    missing = shapely.is_missing(found.geometries) | shapely.is_empty(found.geometries)
+    number = int(missing.sum())
+    if number:
+        verb = "has" if number == 1 else "have"
+        warnings.warn(
+            f"{found.source}: {number:,} of {counted(len(found), 'feature')} {verb} no geometry",
+            LeftOutWarning,
+            stacklevel=3,
+        )
 
 
 def read_input(
@@ -70,7 +100,10 @@ def read_input(
         return sheet.as_geometries(points=True) if any(map(len, lines)) else sheet.as_points()
     if classes is None and holds_geometries(source):
         found = read_geometries(source, columns=columns, layer=layer, chord=chord)
-        return found.as_points() if found.only_points else found
+        if found.only_points:
+            return found.as_points()
+        _warn_of_missing(found)
+        return found
     return read_points(
         source,
         columns=columns,

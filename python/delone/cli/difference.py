@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -26,7 +25,8 @@ from delone.cli.surfaces import (
     surface,
     with_surface,
 )
-from delone.errors import InputError
+from delone.cli.wording import without_layer
+from delone.errors import FileFormatError, InputError
 from delone.io import raster_suffixes
 from delone.io.dem import is_raster
 from delone.io.raster import raster_writer
@@ -114,13 +114,14 @@ def _difference(source: Path, goal: Any, **options: Any) -> Difference:
     """Return the difference; errors about different cells name options."""
     try:
         return terrain.difference(source, goal, **options)
+    except FileFormatError as error:
+        said = str(error)
+        own = said.startswith(f"{goal} ") and isinstance(goal, Path)
+        raise Failure(without_layer(said, "--other-layer") if own else said, Exit.INPUT) from error
     except InputError as error:
         text = str(error).replace(
             "a surface of the other, difference(dem, TIN.from_raster(other))",
             "the other one as a --surface",
-        )
-        text = re.sub(
-            r"bounds=\((.*)\)$", lambda found: "--window " + found[1].replace(" ", ""), text
         )
         if text == str(error):
             raise

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-import re
 import warnings
 from contextlib import contextmanager
 from enum import IntEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, ParamSpec
 
+from delone.cli.wording import without_layer
 from delone.errors import (
     BudgetExceededError,
     BusyError,
@@ -30,7 +30,7 @@ from delone.errors import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator
 
 Given = ParamSpec("Given")
 # Number of pairs of rows whose lines are named; for single rows, errors list ten.
@@ -40,7 +40,6 @@ __all__ = [
     "MEANINGS",
     "Exit",
     "Failure",
-    "as_options",
     "code_of",
     "os_message",
     "protect_inputs",
@@ -134,45 +133,6 @@ def code_of(error: BaseException) -> Exit:
     return next((code for kind, code in codes if isinstance(error, kind)), Exit.INTERNAL)
 
 
-_ATTRIBUTE = re.compile(r"; `error\.\w+` (?:ha|list|contain)[^;]*")
-_QUOTES = str.maketrans("", "", "'\"")
-# The value of an argument in a message: texts with "or" between them, a word, or nothing.
-_VALUE = r"""(?:=((?:["'][\w-]+["'](?:, | or )?)+|\w+)?)?"""
-# Arguments that messages mention and that are options of some commands only.
-_ANYWHERE = ("crossing", "duplicates", "extrapolate", "inside", "max_points", "nan")
-
-
-def as_options(message: str, options: Mapping[str, str] | None = None) -> str:
-    """Rewrite Python arguments in a message as options: ``nan='drop'`` as ``--nan drop``.
-
-    `options` has the option of each argument: ``max_edge`` is ``--max-edge``. An argument is a word
-    with an equals sign or an underscore, or the first word of what is wrong with it. The parts that
-    attributes of the exception contain are left out.
-    """
-    known = {name: f"--{name.replace('_', '-')}" for name in _ANYWHERE} | dict(options or {})
-    names = "|".join(sorted(map(re.escape, known), key=len, reverse=True))
-    plain = _ATTRIBUTE.sub("", message)
-    plain = re.sub(rf"(?<![\w.-])({names}){_VALUE}", lambda found: _option(found, known), plain)
-    return re.sub(r"(--[\w-]+ must be )None \([^)]*\) or ", r"\1", plain)
-
-
-def _option(found: re.Match[str], known: Mapping[str, str]) -> str:
-    """Return the option for an argument, or the text itself if it is an ordinary word."""
-    name, value = found[1], found[2]
-    option = known[name]
-    rest = found.string[found.end() :]
-    if "=" in found[0]:
-        if value == "False":
-            return option.replace("--", "--no-", 1)
-        return option if value in (None, "True") else f"{option} {value.translate(_QUOTES)}"
-    before = found.string[: found.start()]
-    starts = not before or before.endswith((": ", "; "))
-    whole = not re.match(r"\w", rest)
-    if whole and ("_" in name or (starts and re.match(r" must |: ", rest))):
-        return option
-    return found[0]
-
-
 def os_message(error: OSError) -> str:
     """Return the name of the file and the system's message in one line."""
     if error.errno is None:
@@ -182,12 +142,15 @@ def os_message(error: OSError) -> str:
 
 
 @contextmanager
-def reading(*, quiet: bool = False) -> Iterator[None]:
-    """Treat file errors as errors in the input, and print warnings as notes."""
+def reading(*, quiet: bool = False, layer: str | None = "--layer") -> Iterator[None]:
+    """Treat file errors as errors in the input, and print warnings as notes.
+
+    `layer` is the option for the layer of the file; None if it must have only one.
+    """
     # The help shows the exit codes without importing the readers.
     from delone.cli.notes import noting
 
-    with _blaming(Exit.INPUT), noting(quiet=quiet):
+    with _blaming(Exit.INPUT, layer), noting(quiet=quiet):
         yield
 
 
@@ -200,11 +163,12 @@ def writing() -> Iterator[None]:
 
 
 @contextmanager
-def _blaming(code: Exit) -> Iterator[None]:
+def _blaming(code: Exit, layer: str | None = "--layer") -> Iterator[None]:
     try:
         yield
     except FileFormatError as error:
-        raise Failure(str(error), code) from error
+        said = str(error) if layer == "--layer" else without_layer(str(error), layer)
+        raise Failure(said, code) from error
     except OutputError as error:
         raise Failure(os_message(error), Exit.OUTPUT) from error
     except (MissingExtraError, BlockingIOError):

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from delone import Mesh, __version__, mesh
-from delone.cli.constraints import not_finite
+from delone.cli.constraints import geometries_of, not_finite
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.options import Chord, Json, Layer, MeshOutput, Order, Quiet
 from delone.cli.outputs import ready, write_all
@@ -20,7 +20,6 @@ from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, summary
 from delone.cli.show import print_json, print_report
 from delone.errors import CrossingSegmentsError, NonFiniteError
-from delone.io import read_geometries
 from delone.io.writing import WITH_CRS
 
 if TYPE_CHECKING:
@@ -76,7 +75,7 @@ def make_mesh(
         writers = {path: ready(path, order=order) for path in output or ()}
     watch = Stopwatch()
     with reading(quiet=quiet), watch.stage("read"):
-        survey = read_geometries(source, layer=layer, chord=chord)
+        survey = geometries_of(source, layer=layer, chord=chord)
     survey = referenced(survey, crs, planar=planar, quiet=quiet, outputs=writers, known=WITH_CRS)
     options: dict[str, Any] = {
         "min_angle": min_angle,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from delone._base.georeference import CRSWarning
 from delone._base.units import UnitsWarning
+from delone.cli.wording import CALLED, as_options
 from delone.io import LeftOutWarning
 
 if TYPE_CHECKING:
@@ -20,7 +21,12 @@ __all__ = ["note", "noting"]
 def note(message: str | None, *, quiet: bool = False) -> None:
     """Print a note on standard error, if there is one."""
     if message is not None and not quiet:
-        print(f"delone: note: {' '.join(message.split())}", file=sys.stderr)
+        # Imported here, because the list of commands imports what the commands import.
+        from delone.cli.commands import options_of
+
+        arguments = CALLED.get()
+        said = as_options(message, options_of(arguments), keep=arguments, words=False)
+        print(f"delone: note: {' '.join(said.split())}", file=sys.stderr)
 
 
 @contextmanager

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 from delone._base.atomic import check_target, replacing
 from delone._base.extras import require
 from delone._base.units import lengths_of_crs
+from delone.cli.constraints import geometries_of
 from delone.cli.exits import protect_inputs, writing
 from delone.cli.notes import note
 from delone.cli.surfaces import curves_of
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
-from delone.io import read_geometries
 from delone.terrain import Volumes
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ _SHOWN = 20
 
 def read_regions(path: Path, layer: str | None, options: SurfaceOptions) -> GeometrySet:
     """Read polygons with all columns."""
-    return read_geometries(path, layer=layer, attributes="all", **curves_of(path, options.chord))
+    return geometries_of(path, layer=layer, attributes="all", **curves_of(path, options.chord))
 
 
 def ready_rows(output: Sequence[Path], inputs: Sequence[Path]) -> None:

@@ -98,5 +98,4 @@ def note_degrees(
 ) -> None:
     """Print a note that coordinates, (n, 2), are longitudes and latitudes, unless `by` is None."""
     if by is not None and may_be_degrees(coordinates):
-        sentence = message_of_degrees(f"{source}: coordinates", by)
-        note(sentence.replace("planar=True", "--planar"), quiet=quiet)
+        note(message_of_degrees(f"{source}: coordinates", by), quiet=quiet)

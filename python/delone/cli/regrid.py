@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import re
 import warnings
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -21,21 +20,12 @@ from delone.cli.report import Stopwatch
 from delone.cli.show import show_figures, spinner
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from delone.cli.show import Row
 
 __all__ = ["regrid"]
 
 _SUFFIXES = (".nc", ".nc4", ".cdf")
 _IMAGES = (".png", ".svg", ".pdf")
-# Arguments in messages, and the options that set them.
-_ARGUMENTS = (
-    (r"infer_bounds=True", "--infer-bounds"),
-    (r"degrees=True or degrees=False", "--degrees or --radians"),
-    (r"\border=(\d)", r"--order \1"),
-    (r"\b(dims|coords|name|fill|cells)=", r"--\1"),
-)
 
 
 def regrid(
@@ -151,7 +141,7 @@ def regrid(
             check_target(path)
     pair = None if coords is None else _pair(coords)
     watch = Stopwatch()
-    with spinner(quiet or as_json) as say, _options():
+    with spinner(quiet or as_json) as say:
         say(f"reading {source.name}")
         with reading(quiet=quiet), watch.stage("read"):
             whole = _opened(source)
@@ -201,21 +191,6 @@ def regrid(
             **watch.ending(written, regridder.target.ncells),
         }
     show_figures(str(source), figures, _rows, as_json=as_json, quiet=quiet)
-
-
-@contextmanager
-def _options() -> Iterator[None]:
-    """Name options instead of the arguments that messages of the package name."""
-    from delone.errors import InputError
-
-    try:
-        yield
-    except InputError as error:
-        text = str(error)
-        for argument, option in _ARGUMENTS:
-            text = re.sub(argument, option, text)
-        error.args = (text, *error.args[1:])
-        raise
 
 
 def _require_suffix(path: Path, known: tuple[str, ...]) -> None:

@@ -17,6 +17,7 @@ from delone import __version__
 from delone._base.extras import require
 from delone._base.georeference import CRSWarning
 from delone._base.numbers import as_positive
+from delone.cli.constraints import geometries_of
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import noting
 from delone.cli.outputs import staged, write_all
@@ -44,7 +45,6 @@ from delone.cli.surfaces import (
 from delone.cli.tables import ready_table
 from delone.cli.terrain import write_lines
 from delone.errors import InputError
-from delone.io import read_geometries
 from delone.io.raster import raster_writer
 from delone.plot.lines import plot_lines
 from delone.terrain import difference
@@ -156,9 +156,9 @@ def terrain(
     beside = [*(profile or []), *(Path(text) for text in heights if heights[text] is None)]
     inputs = [source, *beside, *options.inputs()]
     with spinner(options.silent) as say, _folder(folder, products, inputs):
-        with reading(quiet=quiet):
+        with reading(quiet=quiet, layer=None):
             lines = [
-                read_geometries(path, **curves_of(path, options.chord, aligned=True))
+                geometries_of(path, **curves_of(path, options.chord, aligned=True))
                 for path in profile or []
             ]
         _require_lines(profile or [], lines)

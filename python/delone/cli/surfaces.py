@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 import typer
 
 from delone import __version__
+from delone.cli.constraints import geometries_of
 from delone.cli.exits import Exit, Failure, reading
 from delone.cli.lines import ROWS, name_lines
 from delone.cli.notes import noting
@@ -23,7 +24,6 @@ from delone.io import (
     PointSet,
     SurfaceFile,
     input_suffixes,
-    read_geometries,
     read_points,
     read_raster,
     read_surface,
@@ -220,11 +220,12 @@ def surface(
     *,
     others: Sequence[Path] = (),
     aligned: bool = False,
+    layer: str = "--layer",
 ) -> TIN:
     """Read points and lines, or a surface, and triangulate them.
 
     Format options may be meant for `others`, which will also be read with them; `aligned` says that
-    one of these has alignments with curves.
+    one of these has alignments with curves. `layer` is the option for the layer of the source.
     """
     say(f"reading {source.name}")
     files = (source, *options.inputs(), *others)
@@ -245,7 +246,7 @@ def surface(
         raise Failure("--voids needs --max-edge: longer edges span a void", Exit.USAGE)
     lined: dict[str, Any] = {"max_edge": options.max_edge, "voids": options.voids}
     survey: PointSet | SurfaceFile
-    with reading(quiet=options.quiet), watch.stage("read"):
+    with reading(quiet=options.quiet, layer=layer), watch.stage("read"):
         if is_raster(source) and source.exists():
             survey = _read_raster(source, options)
         elif source.exists() and holds_surface(source):
@@ -276,7 +277,12 @@ def surface(
 
 
 def other_surface(
-    file: Path, options: SurfaceOptions, watch: Stopwatch, say: Callable[[str], None]
+    file: Path,
+    options: SurfaceOptions,
+    watch: Stopwatch,
+    say: Callable[[str], None],
+    *,
+    layer: str = "--layer",
 ) -> TIN:
     """Read a surface to compare with the first one; lines in other files do not apply to it."""
     own: dict[str, Any] = {"chord": options.chord if _is_drawing(file) else None}
@@ -287,7 +293,7 @@ def other_surface(
     own |= dict.fromkeys(("breaklines", "soft_breaklines", "boundary", "level"))
     alone = replace(options, **own)
     try:
-        return surface(file, alone, watch, say)
+        return surface(file, alone, watch, say, layer=layer)
     except ROWS as error:
         name_lines(error, file, other=True)
         raise
@@ -349,7 +355,9 @@ def _read_surface(source: Path, options: SurfaceOptions) -> SurfaceFile:
 
 
 def _lines(path: Path, options: SurfaceOptions) -> GeometrySet:
-    return read_geometries(path, **curves_of(path, options.chord))
+    # The layer is that of the points.
+    with reading(quiet=options.quiet, layer=None):
+        return geometries_of(path, **curves_of(path, options.chord))
 
 
 def figures_of(source: Path, tin: TIN | TiledDelaunay, output: list[Path] | None) -> dict[str, Any]:

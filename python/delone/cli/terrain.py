@@ -16,6 +16,7 @@ from delone import distributed
 from delone._base.atomic import check_target, replacing
 from delone._base.extras import require
 from delone._base.numbers import as_positive
+from delone.cli.constraints import geometries_of
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.notes import noting
 from delone.cli.options import numbers, outputs
@@ -52,7 +53,7 @@ from delone.cli.surfaces import (
 )
 from delone.cli.tables import APPENDED, TABLE_SUFFIXES, ready_table, write_table
 from delone.cli.tiled import surface_or_tiles
-from delone.io import read_geometries, write_drawing
+from delone.io import write_drawing
 from delone.io.lines import LineBlock, write_line_layer
 from delone.terrain import TIN, Contours, Volumes
 from delone.terrain.contouring import MOST
@@ -275,12 +276,12 @@ def profile(
     ready_profile(output or [], [source, line, *(other or []), *options.inputs()], wanted)
     watch = Stopwatch()
     with spinner(options.silent) as say:
-        with reading(quiet=options.quiet):
-            along = read_geometries(line, **curves_of(line, options.chord, aligned=True))
+        with reading(quiet=options.quiet, layer=None):
+            along = geometries_of(line, **curves_of(line, options.chord, aligned=True))
         files, aligned = [line, *(other or [])], is_landxml(line)
         tin = surface_or_tiles(source, options, watch, say, others=files, aligned=aligned)
         others = {
-            name: other_surface(path, replace(options, layer=own or options.layer), watch, say)
+            name: _another(path, replace(options, layer=own or options.layer), watch, say)
             for name, path, own in named_files(source, other or [], other_layer or [])
         }
         say("computing the profile")
@@ -339,12 +340,13 @@ def volume(
     ready_rows(output or [], [source, Path(other), *polygons, *options.inputs()])
     watch = Stopwatch()
     with spinner(options.silent) as say:
-        with reading(quiet=options.quiet):
+        with reading(quiet=options.quiet, layer=None):
             within = (
                 None
                 if region is None
-                else read_geometries(region, **curves_of(region, options.chord))
+                else geometries_of(region, **curves_of(region, options.chord))
             )
+        with reading(quiet=options.quiet, layer="--regions-layer"):
             lots = None if regions is None else read_regions(regions, regions_layer, options)
         tin = surface_or_tiles(source, options, watch, say, others=[Path(other), *polygons])
         within_other = replace(options, layer=other_layer or options.layer)
@@ -404,7 +406,11 @@ def _goal(
     if Path(other).is_dir():
         with reading(quiet=options.quiet):
             return distributed.open(Path(other))
-    return other_surface(Path(other), options, watch, say)
+    return _another(Path(other), options, watch, say)
+
+
+# For errors: the layer of another file has an option of its own.
+_another = partial(other_surface, layer="--other-layer")
 
 
 def _appended(output: list[Path]) -> bool:

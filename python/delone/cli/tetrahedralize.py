@@ -10,7 +10,7 @@ import numpy as np
 import typer
 
 from delone import RefinementReport, TetMesh, __version__, improve, tetrahedralize
-from delone.cli.exits import Exit, Failure, as_options, protect_inputs, writing
+from delone.cli.exits import Exit, Failure, protect_inputs, writing
 from delone.cli.faces import read_parts
 from delone.cli.options import Json, MeshOutput, Order, Quiet, Workers
 from delone.cli.outputs import ready, write_all
@@ -235,7 +235,7 @@ def _filled(
     try:
         return tetrahedralize(*surface, progress=told, **options)
     except _OF_SURFACE as error:
-        raise Failure(f"{source}: {as_options(str(error))}", Exit.DEGENERATE) from error
+        raise Failure(f"{source}: {error}", Exit.DEGENERATE) from error
 
 
 def _figures(mesh: TetMesh) -> dict[str, Any]:

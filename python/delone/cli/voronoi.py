@@ -13,6 +13,7 @@ from delone import Voronoi, __version__
 from delone._base.arrays import as_workers
 from delone._base.atomic import replacing
 from delone._base.extras import require
+from delone.cli.constraints import geometries_of
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.options import Json, Layer, PlaneColumns, Quiet, Workers, outputs, split
 from delone.cli.referenced import Crs, Planar, referenced, require_known
@@ -20,7 +21,7 @@ from delone.cli.report import Stopwatch, finite_or_none
 from delone.cli.show import show_figures, spinner
 from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
 from delone.errors import DegenerateInputError, FileFormatError, InputError, NonFiniteError
-from delone.io import input_suffixes, read_geometries, read_points
+from delone.io import input_suffixes, read_points
 from delone.io.gdal import DRIVERS
 from delone.io.vector import attribute_names
 
@@ -71,7 +72,7 @@ def voronoi(
         with reading(quiet=quiet), watch.stage("read"):
             sites = _sites(source, split(columns), layer, split(attributes), weights)
             sites = referenced(sites, crs, planar=planar, quiet=quiet)
-            outline = _outline(clip, sites.crs)
+            outline = _outline(clip, sites.crs, quiet=quiet)
         say(f"computing {len(sites):,} cells")
         with watch.stage("diagram"):
             diagram = _diagram(sites, outline, clip, fix=fix, weights=weights, workers=workers)
@@ -123,7 +124,7 @@ def _all_attributes(source: Path, layer: str | None) -> list[str]:
     return attribute_names(source, layer=layer)
 
 
-def _outline(clip: str, crs: str | None) -> Any:
+def _outline(clip: str, crs: str | None, *, quiet: bool) -> Any:
     """The value of --clip: a word, four numbers, or the union of all areas in a file."""
     if clip == "box":
         return clip
@@ -136,7 +137,8 @@ def _outline(clip: str, crs: str | None) -> Any:
     shapely = require("shapely", extra="geo", what="reading an outline")
     if not Path(clip).exists():
         raise Failure(f"{clip}: neither a file, nor box, nor four numbers", Exit.INPUT)
-    found = read_geometries(clip)
+    with reading(quiet=quiet, layer=None):
+        found = geometries_of(Path(clip))
     geometries = found.geometries[~shapely.is_missing(found.geometries)]
     if not len(geometries) or not np.isin(shapely.get_type_id(geometries), _AREAS).all():
         raise FileFormatError(f"{clip} contains something other than polygons")

@@ -147,10 +147,11 @@ class GeometrySet:
         other = ~np.isin(kinds, _POINTS) | shapely.is_empty(self.geometries)
         if other.any():
             row = int(np.flatnonzero(other)[0])
-            kind = getattr(self.geometries[row], "geom_type", "no geometry")
+            kind = getattr(self.geometries[row], "geom_type", None)
             empty = "an empty " if kinds[row] in _POINTS else ""
+            what = "has no geometry" if kind is None else f"is {empty}{kind}"
             raise FileFormatError(
-                f"{self.source}: feature {row} is {empty}{kind}; points are required. "
+                f"{self.source}: feature {row} {what}; points are required. "
                 f"{int(other.sum())} of {counted(len(other), 'feature')} "
                 f"{agreed(int(other.sum()), 'is', 'are')} not points"
             )

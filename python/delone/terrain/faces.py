@@ -56,8 +56,9 @@ def build_faces(surface: SurfaceFile, options: dict[str, Any]) -> building.Built
         given = options.get(name)
         if given is not None and given is not False and not (name == "snap" and given == 0):
             raise InputError(f"{surface.source} has faces, so {name} changes nothing: {_AFRESH}")
-    duplicates = options.get("duplicates", "raise")
+    duplicates, crossing = (options.get(name, "raise") for name in ("duplicates", "crossing"))
     as_choice(duplicates, POLICIES, name="duplicates")
+    as_choice(crossing, POLICIES, name="crossing")
     system = building.system_of(options.get("crs"), surface)
     units = building.settled_units(
         building.stated_units(options.get("units"), surface.units, surface.source),

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone._base.arrays import as_plain_array, as_points, require_finite, wrong_shape
+from delone._base.counting import counted
 from delone._base.extras import require
 from delone._base.georeference import transformed
 from delone.constrained.geodata import geometries_in, is_shapely, no_geometry
@@ -158,7 +159,8 @@ def line_of(given: Any, *, name: str, crs: str | None) -> Floats:
     """Return one line of at least two points, (k, 2)."""
     lines = lines_of(given, name=name, crs=crs)
     if len(lines) != 1 or len(lines[0]) < 2:
-        raise InputError(f"{name} must be one line of at least two points, got {given!r:.60}")
+        found = "one of one point" if len(lines) == 1 else counted(len(lines), "line")
+        raise InputError(f"{name} must be one line of at least two points, got {found}")
     return np.ascontiguousarray(lines[0][:, :2])
 
 
