@@ -7,6 +7,7 @@ import json
 import numpy as np
 import pytest
 
+from delone.io import write_mesh, write_raster
 from delone.terrain import TIN
 
 geopandas = pytest.importorskip("geopandas")
@@ -246,3 +247,40 @@ def test_a_bad_outline_is_repaired_by_an_option(missing, command, monkeypatch):
     code, _, err = command("voronoi", "p.csv", "--clip", "fix=True.geojson", "--planar")
     assert (code, err.endswith("; repair it, or pass --fix\n")) == (3, True), err
     assert "fix=True.geojson: " in err
+
+
+@pytest.mark.parametrize(
+    ("call", "what"),
+    [
+        ("contours p.csv --interval 1 --retriangulate", "--retriangulate is for LandXML and DXF"),
+        ("contours p.csv --interval 1 --easting-first", "--easting-first is for LandXML files"),
+        ("dem p.csv -r 1 -o a.tif --easting-first", "--easting-first is for LandXML files"),
+        ("volume p.csv 1 --retriangulate", "--retriangulate is for LandXML and DXF"),
+        ("contours p.csv --interval 1 --step 2", "--step is for rasters"),
+        ("contours p.csv --interval 1 --window 0,0,1,1", "--window is for rasters and lidar"),
+        ("contours p.xml --interval 1 --crossing min", "--crossing changes nothing"),
+        ("contours p.xml --interval 1 --crossing maybe", "--crossing must be one of"),
+        ("difference p.tif 1 --snap 1", "--snap is for surfaces, and 1 is a height"),
+        ("difference p.tif 1 --surface", "--surface is for rasters, and this is a height"),
+        ("difference p.tif p.csv --surface", "--surface is for rasters, and this is a surface"),
+        ("difference p.tif p.tif --max-edge 1", "and p.tif is a raster: give --surface as well"),
+        ("difference p.tif p.tif --breaklines some.geojson", "--breaklines is for surfaces"),
+        ("difference p.tif p.tif --surface --easting-first", "--easting-first is for LandXML"),
+        ("crossval p.csv --seed 3", "--seed is for random --folds"),
+        ("crossval p.csv --method linear --gradients global", "--gradients is for clough-tocher"),
+        ("voronoi p.csv --clip box --fix", "--fix is for outlines in files, not for --clip box"),
+        ("voronoi p.csv --clip 0,0,1,1 --fix", "--fix is for outlines in files"),
+        ("triangulate p.csv --edges", "--edges is for the files of --output"),
+        ("sphere p.csv --edges", "--edges is for the files of --output"),
+    ],
+)
+def test_options_without_effect_are_refused(missing, command, monkeypatch, call, what):
+    monkeypatch.chdir(missing)
+    points = np.loadtxt("p.csv", delimiter=",", skiprows=1)
+    tin = TIN.from_points(points, units="m")
+    write_mesh("p.xml", tin)
+    write_raster("p.tif", tin.raster(resolution=1))
+    before = sorted(path.name for path in missing.iterdir())
+    code, _, err = command(*call.split())
+    assert (code, what in err) == (2, True), err
+    assert sorted(path.name for path in missing.iterdir()) == before

@@ -22,6 +22,7 @@ from delone.cli.surfaces import (
     four_of,
     height_of,
     print_figures,
+    require_surface,
     surface,
     with_surface,
 )
@@ -37,6 +38,9 @@ if TYPE_CHECKING:
     from delone.terrain import Difference
 
 __all__ = ["difference"]
+
+# Options of surfaces that apply to rasters.
+_OF_RASTERS = ("nodata", "window", "layer", "crs", "units", "planar", "workers", "as_json", "quiet")
 
 
 @with_surface
@@ -90,6 +94,10 @@ def difference(
     bands = {"band": band_of(source, options.layer), "bounds": box, "nodata": options.nodata}
     with spinner(options.silent) as say:
         goal: Any = height_of(other)
+        if goal is not None or is_raster(Path(other)):
+            _require_effect(other, options, as_surface=as_surface, height=goal is not None)
+        elif as_surface:
+            raise Failure(f"{other}: --surface is for rasters, and this is a surface", Exit.USAGE)
         if goal is None and is_raster(Path(other)) and not as_surface:
             goal = Path(other)
             bands["other_band"] = band_of(goal, other_layer or options.layer)
@@ -98,7 +106,7 @@ def difference(
             own = replace(options, layer=other_layer, window=None)
             if not is_raster(Path(other)):
                 own = replace(own, nodata=None)
-            goal = surface(Path(other), own, watch, say)
+            goal = surface(Path(other), own, watch, say, layer="--other-layer")
         say("computing the difference")
         with reading(quiet=quiet), noting(quiet=quiet), watch.stage("difference"):
             found = _difference(source, goal, crs=options.crs, units=options.units, **bands)
@@ -108,6 +116,15 @@ def difference(
     of = dict.fromkeys(("cut", "fill", "net"), found.volume_units) | {"area": found.area_units}
     of |= dict.fromkeys(("least", "greatest", "mean", "root_mean_square"), found.units)
     print_figures(source, figures, as_json=options.as_json, quiet=quiet, of=of)
+
+
+def _require_effect(other: str, options: SurfaceOptions, *, as_surface: bool, height: bool) -> None:
+    """Reject options for surfaces if OTHER is a height, or a raster that remains one."""
+    if height and as_surface:
+        raise Failure(f"{other}: --surface is for rasters, and this is a height", Exit.USAGE)
+    if not as_surface:
+        kind = "a height" if height else "a raster: give --surface as well"
+        require_surface(options, _OF_RASTERS, f"is for surfaces, and {other} is {kind}")
 
 
 def _difference(source: Path, goal: Any, **options: Any) -> Difference:

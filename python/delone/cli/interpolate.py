@@ -151,7 +151,9 @@ def crossval(
     folds: Annotated[
         int | None, typer.Option(help="Number of random folds; by default leave one out.")
     ] = None,
-    seed: Annotated[int, typer.Option(help="Seed of the random folds.")] = 0,
+    seed: Annotated[
+        int | None, typer.Option(help="Seed of the random folds; by default 0.")
+    ] = None,
     duplicates: Duplicates = "raise",
     nan: Nan = "raise",
     gradients: Gradients = None,
@@ -169,6 +171,10 @@ def crossval(
     names = list(dict.fromkeys(name.strip() for name in named))
     for name in names:
         as_choice(name, tuple(METHODS), name="--method")
+    if seed is not None and folds is None:
+        raise Failure("--seed is for random --folds", Exit.USAGE)
+    if gradients is not None and not set(names) & set(_SMOOTH):
+        raise _no_gradients(", ".join(names))
     require_known(crs)
     watch = Stopwatch()
     found: dict[str, dict[str, Any]] = {}
@@ -185,7 +191,7 @@ def crossval(
                     values,
                     name,
                     folds=folds,
-                    seed=seed,
+                    seed=seed or 0,
                     duplicates=duplicates,
                     nan=nan,
                     workers=workers,
@@ -256,8 +262,12 @@ def _made(
     if gradients is not None:
         options["gradients"] = gradients
         if method not in _SMOOTH:
-            raise Failure(f"--gradients is for {', '.join(_SMOOTH)}, not {method}", Exit.USAGE)
+            raise _no_gradients(method)
     return interpolator(survey.points, values, method, **options)
+
+
+def _no_gradients(names: str) -> Failure:
+    return Failure(f"--gradients is for {', '.join(_SMOOTH)}, not {names}", Exit.USAGE)
 
 
 def _raster_options(size: str | None, resolution: str | None, bounds: str | None) -> dict[str, Any]:

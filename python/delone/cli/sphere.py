@@ -89,6 +89,8 @@ def globe(
     """
     require_known(crs)
     center = _view(view)
+    if edges and not output:
+        raise Failure("--edges is for the files of --output", Exit.USAGE)
     with writing():
         protect_inputs(output or (), source)
         writers = {path: _ready(path, center) for path in output or ()}

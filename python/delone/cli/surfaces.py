@@ -47,6 +47,7 @@ __all__ = [
     "is_landxml",
     "other_surface",
     "print_figures",
+    "require_surface",
     "surface",
     "with_surface",
 ]
@@ -195,6 +196,13 @@ def with_surface(command: Callable[..., None]) -> Callable[..., None]:
     return run
 
 
+def require_surface(options: SurfaceOptions, allowed: Sequence[str], why: str) -> None:
+    """Reject options that change how a surface is made, where none is made."""
+    for each in fields(SurfaceOptions):
+        if each.name not in allowed and getattr(options, each.name) != each.default:
+            raise Failure(f"--{each.name.replace('_', '-')} {why}", Exit.USAGE)
+
+
 def curves_of(path: Path, chord: float | None, *, aligned: bool = False) -> dict[str, Any]:
     """Return --chord as a reader option for DXF files, which have curves; nothing for others.
 
@@ -234,14 +242,7 @@ def surface(
             "--chord is for DXF files and for alignments, and the inputs contain neither",
             Exit.USAGE,
         )
-    for option, given in (("--step", options.step != 1), ("--nodata", options.nodata is not None)):
-        if given and not any(map(is_raster, (source, *others))):
-            raise Failure(f"{source}: {option} is for rasters: .tif .tiff .asc .nc", Exit.USAGE)
-    if options.window is not None and not any(map(_has_window, (source, *others))):
-        raise Failure(
-            f"{source}: --window is for rasters and lidar: .tif .tiff .asc .nc .las .laz ept.json",
-            Exit.USAGE,
-        )
+    _require_kinds((source, *others), options)
     if options.voids and options.max_edge is None:
         raise Failure("--voids needs --max-edge: longer edges span a void", Exit.USAGE)
     lined: dict[str, Any] = {"max_edge": options.max_edge, "voids": options.voids}
@@ -276,6 +277,25 @@ def surface(
         return TIN.from_surface(survey, faces=not options.retriangulate, planar=True, **lined)
 
 
+def _require_kinds(files: Sequence[Path], options: SurfaceOptions) -> None:
+    """Reject options for kinds of files that none of the files is of."""
+    rasters = "rasters: .tif .tiff .asc .nc"
+    for option, given, holds, kinds in (
+        ("--step", options.step != 1, is_raster, rasters),
+        ("--nodata", options.nodata is not None, is_raster, rasters),
+        (
+            "--window",
+            options.window is not None,
+            _has_window,
+            "rasters and lidar: .tif .tiff .asc .nc .las .laz ept.json",
+        ),
+        ("--retriangulate", options.retriangulate, holds_surface, "LandXML and DXF files"),
+        ("--easting-first", options.easting_first, is_landxml, "LandXML files"),
+    ):
+        if given and not any(map(holds, files)):
+            raise Failure(f"{files[0]}: {option} is for {kinds}", Exit.USAGE)
+
+
 def other_surface(
     file: Path,
     options: SurfaceOptions,
@@ -290,6 +310,8 @@ def other_surface(
         own |= {"step": 1, "nodata": None}
     if not _has_window(file):
         own["window"] = None
+    own["retriangulate"] = options.retriangulate and holds_surface(file)
+    own["easting_first"] = options.easting_first and is_landxml(file)
     own |= dict.fromkeys(("breaklines", "soft_breaklines", "boundary", "level"))
     alone = replace(options, **own)
     try:

@@ -119,11 +119,14 @@ def triangulate(
     .xdmf, .inp, .su2 and .png.
     """
     space = space_or_plane(in_space, in_plane)
-    if min_angle is not None and not better:
-        raise Failure("--min-angle is the goal of --improve: give --improve as well", Exit.USAGE)
+    for option, value, what in (("min-angle", min_angle, "goal"), ("max-iter", max_iter, "limit")):
+        if value is not None and not better:
+            raise Failure(
+                f"--{option} is the {what} of --improve: give --improve as well", Exit.USAGE
+            )
+    if edges and not output:
+        raise Failure("--edges is for the files of --output", Exit.USAGE)
     require_known(crs)
-    if max_iter is not None and not better:
-        raise Failure("--max-iter is the limit of --improve: give --improve as well", Exit.USAGE)
     with writing():
         protect_inputs(output or (), source)
         writers = {path: ready(path) for path in output or ()}

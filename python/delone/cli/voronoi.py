@@ -62,6 +62,8 @@ def voronoi(
 ) -> None:
     """Clip the Voronoi cells of sites to an outline, and write them with their attributes."""
     require_known(crs)
+    if fix and not Path(clip).exists():
+        raise Failure(f"--fix is for outlines in files, not for --clip {clip}", Exit.USAGE)
     with writing():
         protect_inputs(output or (), source, Path(clip))
         for path in output or ():

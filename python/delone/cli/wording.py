@@ -58,7 +58,7 @@ _UNRESOLVED = re.compile(rf"(?<![\w.-])(?:{'|'.join(ARGUMENTS)})=")
 # What begins a part of a message, and so a piece of advice.
 _PART = re.compile(r"; |: |, or |(?<=\?) ")
 # What follows an argument at the start of a message.
-_WRONG = re.compile(r" must | needs | is for | is empty| has no |: ")
+_WRONG = re.compile(r" must | needs | is for | is empty| has no | changes nothing|: ")
 _LAYER = re.compile(r"choose (?:one|a variable)(?: with band)? \(--layer\)(?:, from 1)?")
 
 
@@ -147,7 +147,7 @@ def _option(found: re.Match[str], known: Mapping[str, Switch], words: bool) -> s
             value = re.sub(r",\s+", ",", value)
         return f"{option} {value.translate(_MARKS)}"
     before = found.string[: found.start()]
-    starts = not before or before.endswith((": ", "; "))
+    starts = not before or before.endswith((": ", "; ", ", so "))
     whole = not re.match(r"\w", rest)
     if words and whole and ("_" in name or (starts and _WRONG.match(rest))):
         return option

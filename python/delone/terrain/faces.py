@@ -52,13 +52,14 @@ def with_lines(surface: SurfaceFile, options: dict[str, Any]) -> dict[str, Any]:
 
 def build_faces(surface: SurfaceFile, options: dict[str, Any]) -> building.Built:
     """Return the surface of the faces of a file; edges on its breaklines are breaklines."""
-    for name in (*_LINES, *_RINGS, "max_edge", "voids", "level", "snap"):
-        given = options.get(name)
-        if given is not None and given is not False and not (name == "snap" and given == 0):
-            raise InputError(f"{surface.source} has faces, so {name} changes nothing: {_AFRESH}")
     duplicates, crossing = (options.get(name, "raise") for name in ("duplicates", "crossing"))
     as_choice(duplicates, POLICIES, name="duplicates")
     as_choice(crossing, POLICIES, name="crossing")
+    without = {"snap": 0, "crossing": "raise"}
+    for name in (*_LINES, *_RINGS, "max_edge", "voids", "level", "snap", "crossing"):
+        given = options.get(name)
+        if given is not None and given is not False and given != without.get(name):
+            raise InputError(f"{surface.source} has faces, so {name} changes nothing: {_AFRESH}")
     system = building.system_of(options.get("crs"), surface)
     units = building.settled_units(
         building.stated_units(options.get("units"), surface.units, surface.source),
