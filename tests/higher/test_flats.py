@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 import warnings
 from fractions import Fraction
 from itertools import combinations
@@ -382,3 +383,30 @@ def test_points_that_rounding_takes_out_of_a_flat_are_told() -> None:
     with pytest.warns(delone.NearlyFlatWarning, match=told) as caught:
         delone.RegularTriangulation(fractions, random.random(60) / 100)
     assert caught[0].filename == __file__
+
+
+@pytest.mark.parametrize("d", range(4, 9))
+def test_the_flat_has_its_dimension(d: int) -> None:
+    random = np.random.default_rng(d)
+    for k in range(1, d + 1):
+        base = np.zeros((k, d))
+        base[:, :k] = np.eye(k)
+        base[:, k:] = random.random((k, d - k)) - 0.5
+        points = random.random((16, k)) @ base[:, random.permutation(d)] * 7 + random.random(d)
+        # Hulls are quick in many dimensions; so are triangulations of few points.
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", delone.NearlyFlatWarning)
+            ConvexHull(points)
+        told = [str(each.message) for each in caught]
+        if k == d:
+            assert told == []
+            continue
+        (message,) = told
+        assert f"in a flat of dimension {k} except" in message
+        left = re.search(r"for example columns? ([\d, ]+), or pass", message)
+        assert left is not None
+        columns = [int(each) for each in left[1].split(", ")]
+        assert len(set(columns)) == len(columns) == d - k
+        # The other columns span the flat, and by more than rounding.
+        kept = np.delete(points - points.mean(axis=0), columns, axis=1)
+        assert np.linalg.svd(kept, compute_uv=False)[-1] > 1e-3

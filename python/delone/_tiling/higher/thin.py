@@ -1,8 +1,9 @@
 """Warn of points that are in a flat except for rounding, such as fractions that add up to one.
 
-The points span all dimensions, but by rounding errors only, so simplices are very thin. The normal
-of the best flat is the last singular vector of the centered columns, each divided by its extent.
-The QR decomposition before that costs O(n d^2), little compared with a triangulation.
+The points span all dimensions, but by rounding errors only, so simplices are very thin. The normals
+of the best flat are the last singular vectors of the centered columns, each divided by its extent:
+as many as have all points within rounding errors. The QR decomposition before that costs O(n d^2),
+little compared with a triangulation.
 """
 
 from __future__ import annotations
@@ -54,15 +55,34 @@ def warn_of_rounding(points: Floats) -> None:
         # Coordinates of few bits beside a large offset may be exact, and a rounding is large there.
         if not np.isfinite(scaled).all() or not _ROUNDINGS * unit.max() < _COARSE:
             return
-        normal = np.linalg.svd(np.linalg.qr(scaled, mode="r"))[2][-1]
-        distance = np.abs(scaled @ normal).max()
-    if distance > _ROUNDINGS * (np.abs(normal) * unit).sum():
+        vectors = np.linalg.svd(np.linalg.qr(scaled, mode="r"))[2]
+        distance = np.abs(scaled @ vectors.T).max(axis=0)
+    near = distance <= _ROUNDINGS * (np.abs(vectors) @ unit)
+    # The last ones, as far as all of them are normals.
+    count = int(np.logical_and.accumulate(near[::-1]).sum())
+    if not count:
         return
-    column = int(np.flatnonzero(np.abs(normal) >= np.abs(normal).max() / 2)[-1])
+    columns = _dependent(vectors[-count:])
+    named = f"column {columns[0]}" if count == 1 else f"columns {', '.join(map(str, columns))}"
     warnings.warn(
-        f"points lie in a flat of dimension {d - 1} except for rounding errors, so simplices in "
-        f"{d}-D are very thin: leave out a column, for example column {column}, or pass exact "
-        'coordinates, such as integers, with flat="project"',
+        f"points lie in a flat of dimension {d - count} except for rounding errors, so simplices "
+        f"in {d}-D are very thin: leave out {'a column' if count == 1 else f'{count} columns'}, "
+        f"for example {named}, or pass exact coordinates, such as integers, with "
+        'flat="project"',
         NearlyFlatWarning,
         stacklevel=caller_level(),
     )
+
+
+def _dependent(normals: Floats) -> list[int]:
+    """Return as many columns as there are normals, such that the others determine them."""
+    rest, found = normals.copy(), []
+    for _ in range(len(normals)):
+        # Elimination: of the columns that are about as good, the last one.
+        size = np.abs(rest).max(axis=0)
+        column = int(np.flatnonzero(size >= size.max() / 2)[-1])
+        row = int(np.abs(rest[:, column]).argmax())
+        rest -= np.outer(rest[:, column] / rest[row, column], rest[row])
+        rest[:, column] = 0.0
+        found.append(column)
+    return sorted(found)
