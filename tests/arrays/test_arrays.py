@@ -145,9 +145,26 @@ def test_takes_masked_arrays_that_mask_nothing(mask: Any) -> None:
     assert mesh.points[0, 0] == SQUARE[0, 0] != 77.0
 
 
-def test_refuses_ragged_rows() -> None:
-    with pytest.raises(ShapeError, match="unequal length"):
-        _arrays.as_points([[1, 2], [3]])
+@pytest.mark.parametrize(
+    ("rows", "what"),
+    [
+        ([[1, 2], [3]], "points has rows of unequal length: row 0 has 2, row 1 has 1"),
+        (
+            [[1, 2], [1, 2], 3],
+            "points has rows of unequal length: row 0 has 2, row 2 is a single value",
+        ),
+        ([3, [1, 2]], "points has rows of unequal length: row 0 is a single value, row 1 has 2"),
+        ([[[1, 2]], [[1, 2, 3]], [[1, 2]]], "points has rows of unequal shape"),
+        (
+            [[1, [2]], [3, 4]],
+            "points has rows of unequal length in row 0: row 0 is a single value, row 1 has 1",
+        ),
+    ],
+)
+def test_refuses_ragged_rows(rows: object, what: str) -> None:
+    with pytest.raises(ShapeError) as caught:
+        _arrays.as_points(rows)
+    assert str(caught.value) == what
 
 
 @pytest.mark.parametrize(

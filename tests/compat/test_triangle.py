@@ -11,7 +11,13 @@ import pytest
 
 from delone import datasets, mesh
 from delone.compat.triangle import convex_hull, delaunay, triangulate, voronoi
-from delone.errors import DtypeError, InputError, ShapeError
+from delone.errors import (
+    CrossingSegmentsError,
+    DtypeError,
+    InputError,
+    NonFiniteError,
+    ShapeError,
+)
 from tiers import seeds
 
 SQUARE: dict[str, Any] = {"vertices": [(0, 0), (1, 0), (1, 1), (0, 1)]}
@@ -207,3 +213,33 @@ def test_no_triangles_are_nothing_to_refine() -> None:
     square = {"vertices": [(0, 0), (4, 0), (4, 4), (0, 4)], "triangles": np.zeros((0, 3), int)}
     with pytest.raises(InputError, match="triangles has no rows"):
         triangulate(square, "rqa1")
+
+
+def test_errors_of_given_triangles_have_the_words_of_triangle() -> None:
+    square: dict[str, Any] = {"vertices": [(0, 0), (4, 0), (4, 4), (0, 4)]}
+    for triangles, kind, what in (
+        ([(0, 1, 2), (0, 2, 9)], InputError,
+         "triangles: row 1 is [0, 2, 9], outside the range 0 to 3"),
+        ([(0, 1, 2), (0, 1, 3)], CrossingSegmentsError,
+         "triangles overlap, or segments cross their outline, first at (2.0, 2.0)"),
+        ([(0, 1), (0, 2)], ShapeError, "triangles must have shape (m, 3), got (2, 2)"),
+        ([(0, 1, 2), (0, 2)], ShapeError,
+         "triangles has rows of unequal length: row 0 has 3, row 1 has 2"),
+    ):  # fmt: skip
+        with pytest.raises(kind) as caught:
+            triangulate(square | {"triangles": triangles}, "r")
+        assert str(caught.value) == what
+
+
+def test_maximum_areas_that_are_no_numbers_are_named() -> None:
+    made = triangulate({"vertices": [(0, 0), (4, 0), (4, 4), (0, 4)]})
+    with pytest.raises(NonFiniteError, match="triangle_max_area is NaN in 1") as caught:
+        triangulate(made | {"triangle_max_area": [[1.0], [np.nan]]}, "ra")
+    assert (caught.value.rows.tolist(), caught.value.count) == ([1], 1)
+    with pytest.raises(DtypeError, match="triangle_max_area must hold real numbers"):
+        triangulate(made | {"triangle_max_area": ["x", "y"]}, "ra")
+    with pytest.raises(ShapeError, match="row 0 is a single value, row 1 has 2"):
+        triangulate(made | {"triangle_max_area": [1, [2, 3]]}, "ra")
+    # As in Triangle, what is not above 0 is no limit; nor is infinity.
+    free = triangulate(made | {"triangle_max_area": [[-1.0], [np.inf]]}, "ra")
+    assert len(free["triangles"]) == 2

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import pickle
+from collections import UserDict
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 import pytest
 
 import delone
+import delone.areal
 from delone import ConstrainedDelaunay, errors
 
 SQUARE = [(0, 0), (6, 0), (6, 6), (0, 6)]
@@ -47,7 +50,7 @@ class TestSegments:
             ConstrainedDelaunay(SQUARE, np.zeros(shape, dtype=np.int32))
 
     def test_rows_of_unequal_length_are_refused(self) -> None:
-        with pytest.raises(errors.ShapeError):
+        with pytest.raises(errors.ShapeError, match=r"length: row 0 has 2, row 1 has 1$"):
             ConstrainedDelaunay(SQUARE, [(0, 1), (1,)])
 
     @pytest.mark.parametrize("dtype", [np.int8, np.uint64, ">i8", np.int32])
@@ -230,3 +233,57 @@ class TestMasks:
         for value in (np.ma.masked, np.ma.masked_array(30, mask=True)):
             with pytest.raises(errors.DtypeError, match=name):
                 delone.mesh(square, **{name: value})
+
+
+RING = [[0, 0], [6, 0], [6, 6], [0]]
+
+
+@pytest.mark.parametrize(
+    ("kind", "coordinates", "row"),
+    [
+        ("Polygon", [RING], "row 3 is [0]"),
+        ("MultiPolygon", [[RING]], "row 3 is [0]"),
+        ("LineString", RING, "row 3 is [0]"),
+        ("LineString", [[0, 0], [1, "a"]], "row 1 is [1, 'a']"),
+        ("MultiLineString", [RING[::-1]], "row 0 is [0]"),
+        ("Point", [0, [1]], "row 0 is [0, [1]]"),
+    ],
+)
+def test_the_row_of_coordinates_that_are_no_pair_is_named(
+    kind: str, coordinates: Any, row: str
+) -> None:
+    given = {"type": kind, "coordinates": coordinates}
+    tin = [(0, 0, 0), (6, 0, 1), (6, 6, 2)]
+    for call in (
+        lambda: delone.from_geometry(given),
+        lambda: delone.mesh(given),
+        lambda: delone.Voronoi(SQUARE, clip=given),
+        lambda: delone.terrain.TIN.from_points(tin, breaklines=given),
+    ):
+        with pytest.raises(errors.InputError) as caught:
+            call()
+        message = str(caught.value)
+        assert message.removeprefix(f"breaklines: {given!r:.80} is not a geometry: ") == (
+            f"the coordinates of a {kind} are not pairs of numbers: {row}"
+        )
+
+
+@pytest.mark.parametrize("wrap", [dict, MappingProxyType, UserDict])
+def test_every_mapping_is_welcome_everywhere(wrap: Any) -> None:
+    square = wrap({"type": "Polygon", "coordinates": [[*SQUARE, SQUARE[0]]]})
+    line = wrap({"type": "LineString", "coordinates": [(1, 1), (3, 2)]})
+    feature = wrap({"type": "Feature", "properties": {}, "geometry": square})
+    layer = wrap({"type": "FeatureCollection", "features": [feature]})
+    table = [(x, y, x) for x, y in SQUARE]
+    for one in (square, feature, layer, [square], [feature]):
+        assert delone.mesh(one).npoints == 4
+        assert delone.from_geometry(one).npoints == 4
+        assert delone.terrain.TIN.from_points(table, boundary=one).nsimplex == 2
+    for one in (square, feature, layer, [square]):
+        assert len(delone.Voronoi(SQUARE, clip=one).points) == 4
+    cells = delone.areal.Overlaps(layer, [square])
+    assert cells.areas.tolist() == [36]
+    tin = delone.terrain.TIN.from_points(table, breaklines=line)
+    assert tin.npoints == 6
+    assert tin.profile(line).z.tolist() == pytest.approx([1, 3])
+    assert tin.volume_to(0, region=square).area == 36

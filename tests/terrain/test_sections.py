@@ -240,3 +240,19 @@ def test_the_alignment_is_transformed():
     found = tin.cross_sections(road.to_crs(4326), interval=20, left=5)
     assert found.stations[-1] == pytest.approx(60, abs=0.01)
     assert isinstance(tin.profiles(road.to_crs(4326)), delone.terrain.Profiles)
+
+
+def test_a_line_without_length_is_refused():
+    tin = TIN.from_points([(0, 0, 0), (4, 0, 4), (4, 4, 4), (0, 4, 0)])
+    still = [(1, 1), (1, 1), (1, 1)]
+    for call in (
+        lambda: tin.profile(still),
+        lambda: tin.profiles(still, {}),
+        lambda: tin.cross_sections(still, interval=1, left=1),
+    ):
+        with pytest.raises(InputError, match="line has no length: it needs two points that differ"):
+            call()
+    with pytest.raises(InputError, match="one line of at least two points, got one of one point"):
+        tin.profile([(1, 1)])
+    # Points may repeat.
+    assert tin.profile([(1, 1), (1, 1), (3, 1)]).distances[-1] == 2

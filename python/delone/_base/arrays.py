@@ -21,6 +21,7 @@ import numpy as np
 
 from delone._base.counting import agreed, counted
 from delone._base.georeference import column_words, transformed
+from delone._base.uneven import uneven
 from delone.errors import DtypeError, InputError, LimitError, NonFiniteError, ShapeError
 
 if TYPE_CHECKING:
@@ -450,7 +451,7 @@ def as_plain_array(points: Any, name: str) -> NDArray[Any]:
     except ValueError as error:
         if not isinstance(points, list | tuple):
             raise
-        raise ShapeError(f"{name} has rows of unequal length: {error}") from error
+        raise ShapeError(uneven(points, name)) from error
 
 
 def _refuse_columns(points: Any, array: NDArray[Any], name: str) -> None:

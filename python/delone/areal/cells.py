@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -131,9 +132,9 @@ def _count(given: Any) -> int:
     """Return the number of geometries, of which the last ones may have no parts."""
     if hasattr(given, "geometry"):
         return len(given.geometry)
-    if isinstance(given, dict) and "features" in given:
+    if isinstance(given, Mapping) and "features" in given:
         return len(given["features"])
-    if isinstance(given, dict) or not hasattr(given, "__len__"):
+    if isinstance(given, Mapping) or not hasattr(given, "__len__"):
         return 1
     # A ring of positions is one geometry.
     return 1 if len(given) and np.ndim(next(iter(given))) == 1 else len(given)

@@ -32,6 +32,7 @@ __all__ = [
     "Workers",
     "class_numbers",
     "outputs",
+    "require_files",
     "require_own",
     "space_or_plane",
     "split",
@@ -117,6 +118,12 @@ def space_or_plane(solid: bool, flat: bool) -> bool | None:
     if solid and flat:
         raise Failure("--3d and --2d contradict each other: give one of them", Exit.USAGE)
     return solid or (False if flat else None)
+
+
+def require_files(edges: bool, output: Sequence[Path] | None) -> None:
+    """Reject --edges without a file to write them to."""
+    if edges and not output:
+        raise Failure("--edges is for the files of --output", Exit.USAGE)
 
 
 def require_own(

@@ -25,6 +25,7 @@ from delone.cli.options import (
     Workers,
     class_numbers,
     outputs,
+    require_files,
     split,
 )
 from delone.cli.outputs import write_all
@@ -89,8 +90,7 @@ def globe(
     """
     require_known(crs)
     center = _view(view)
-    if edges and not output:
-        raise Failure("--edges is for the files of --output", Exit.USAGE)
+    require_files(edges, output)
     with writing():
         protect_inputs(output or (), source)
         writers = {path: _ready(path, center) for path in output or ()}

@@ -23,6 +23,7 @@ from delone.cli.options import (
     Solid,
     Workers,
     class_numbers,
+    require_files,
     space_or_plane,
     split,
 )
@@ -124,8 +125,7 @@ def triangulate(
             raise Failure(
                 f"--{option} is the {what} of --improve: give --improve as well", Exit.USAGE
             )
-    if edges and not output:
-        raise Failure("--edges is for the files of --output", Exit.USAGE)
+    require_files(edges, output)
     require_known(crs)
     with writing():
         protect_inputs(output or (), source)

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_segments, as_simplices, wrong_shape
+from delone._base.arrays import as_plain_array, as_segments, as_simplices, wrong_shape
 from delone._base.counting import counted, listed
 from delone._base.duplicates import first_rows
-from delone._base.values import as_labels
+from delone._base.values import as_labels, require_real
 from delone._tiling.plane import topology
-from delone.errors import InputError, ShapeError
+from delone.errors import CrossingSegmentsError, InputError, NonFiniteError, ShapeError
 from delone.refine import domains
 from delone.refine.domains import Domain, Lines
 from delone.refine.meshed import Mesh
@@ -57,7 +57,7 @@ class Given(NamedTuple):
     @classmethod
     def of(cls, triangles: Any, segments: Indices, points: Floats) -> Given:
         """Turn the triangles counter-clockwise, with the first of equal points as corners."""
-        rows = as_simplices(triangles, len(points), 2)
+        rows = as_simplices(triangles, len(points), 2, name="triangles")
         if not len(rows):
             raise InputError("triangles has no rows, so there is nothing to refine")
         simplices = first_rows(points)[rows].astype(np.int32)
@@ -114,7 +114,9 @@ def rows_of(values: Any, columns: int | None, name: str, count: int | None = Non
     """Convert a table of `columns` numbers; a vector is a column, and None has no rows."""
     if values is None:
         return np.empty((0, columns or 1))
-    array = np.array(values, dtype=np.float64)
+    given = as_plain_array(values, name)
+    require_real(given, name, kinds="biuf")
+    array = given.astype(np.float64)
     if array.ndim == 1:
         array = array[:, None] if columns is None else array.reshape(-1, columns)
     if array.ndim != 2 or (columns is not None and len(array) and array.shape[1] != columns):
@@ -122,6 +124,19 @@ def rows_of(values: Any, columns: int | None, name: str, count: int | None = Non
     if count is not None and len(array) != count:
         raise ShapeError(f"{name} must have {count} rows, got {len(array)}")
     return array
+
+
+def max_areas(values: Any, count: int | None = None) -> Floats:
+    """Return the largest area of each triangle; infinity and what is not above 0 set none."""
+    given = rows_of(values, None, "triangle_max_area", count)[:, 0]
+    wrong = np.flatnonzero(np.isnan(given))
+    if len(wrong):
+        raise NonFiniteError(
+            f"triangle_max_area is NaN in {listed(wrong, _FIRST)}",
+            rows=wrong[:_FIRST],
+            count=len(wrong),
+        )
+    return given
 
 
 def keys_of(edges: Indices, npoints: int) -> NDArray[np.int64]:
@@ -174,7 +189,12 @@ def _domain(tri: Mapping[str, Any], base: Given, given: Indices, switches: Switc
     _, first = np.unique(keys_of(ends, n), return_index=True)
     first.sort()
     ends = ends[first]
-    made, _ = domains.triangulated(points, ends, rim, np.zeros(len(rim), np.int32), None)
+    try:
+        made, _ = domains.triangulated(points, ends, rim, np.zeros(len(rim), np.int32), None)
+    except CrossingSegmentsError as error:
+        x, y = error.points[0].tolist()
+        error.args = (f"triangles overlap, or segments cross their outline, first at ({x}, {y})",)
+        raise
     marks = np.append(markers, np.zeros(int(bare.sum()), dtype=np.int32))[first]
     own = np.flatnonzero(first < len(given))
     counts = (first < len(given)).astype(np.int64)
@@ -230,7 +250,7 @@ def _caps(tri: Mapping[str, Any], domain: Domain, base: Given, switches: Switche
         caps[inside] = switches.area
     elif "a" in switches.on and tri.get("triangle_max_area") is not None:
         count = len(tri["triangles"])
-        given = rows_of(tri["triangle_max_area"], None, "triangle_max_area", count)[:, 0]
+        given = max_areas(tri["triangle_max_area"], count)
         number = np.full(len(inside) + 1, -1)
         number[:-1][inside] = np.arange(np.count_nonzero(inside))
         wanted = given[
@@ -274,7 +294,7 @@ def _allowed(tri: Mapping[str, Any], found: Mesh, base: Any, switches: Switches)
     if isinstance(base, Given):
         if tri.get("triangle_max_area") is None:
             return math.inf
-        given = rows_of(tri["triangle_max_area"], None, "triangle_max_area")[:, 0]
+        given = max_areas(tri["triangle_max_area"])
         wanted = given[_homes_of(found, base)]
     else:
         areas = rows_of(tri.get("regions"), 4, "regions")[:, 3]

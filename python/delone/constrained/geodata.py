@@ -131,7 +131,7 @@ def _batches(given: Any, name: str) -> Iterator[Any]:
         yield np.asarray(given.geometry.values, dtype=object)
     elif isinstance(getattr(given, "geometries", None), np.ndarray):  # a GeometrySet
         yield from _batches(given.geometries, name)
-    elif isinstance(given, dict) or hasattr(given, "__geo_interface__"):
+    elif isinstance(given, Mapping) or hasattr(given, "__geo_interface__"):
         for geometry in geometries_in(given, name):
             yield _object_array([geometry]) if is_shapely(geometry) else geometry
     elif isinstance(given, str | bytes | os.PathLike):
@@ -197,7 +197,7 @@ def is_shapely(given: Any) -> bool:
 def is_geometry(given: Any) -> bool:
     """Return whether an object is one geometry or a table of geometries, not coordinates."""
     names = "geom_type", "__geo_interface__"
-    return isinstance(given, dict) or any(hasattr(given, name) for name in names)
+    return isinstance(given, Mapping) or any(hasattr(given, name) for name in names)
 
 
 def _of_iterable(given: Iterable[Any], name: str) -> Iterator[Any]:
@@ -385,9 +385,7 @@ def _run(coordinates: Any, what: str) -> Floats:
     except DtypeError:
         raise
     except (TypeError, ValueError) as error:
-        raise ShapeError(
-            f"the coordinates of a {what} are not pairs of numbers: {error}"
-        ) from error
+        raise _no_pairs(coordinates, what) from error
     except OverflowError as error:
         raise InputError(
             f"a {what} has a coordinate beyond the range of doubles: {error}"
@@ -395,8 +393,21 @@ def _run(coordinates: Any, what: str) -> Floats:
     if rows.size == 0:
         return np.empty((0, 2))
     if rows.ndim != 2 or rows.shape[1] != 2:
-        raise ShapeError(f"the coordinates of a {what} are not pairs of numbers")
+        raise _no_pairs(coordinates, what)
     return rows
+
+
+def _no_pairs(coordinates: Any, what: str) -> ShapeError:
+    """Return the error for coordinates that no array can hold, with the first row at fault."""
+    message = f"the coordinates of a {what} are not pairs of numbers"
+    for number, row in enumerate(coordinates if hasattr(coordinates, "__iter__") else ()):
+        try:
+            [float(each) for each in tuple(row)[:2]]
+            if len(row) == 1:
+                raise ValueError
+        except (TypeError, ValueError):
+            return ShapeError(f"{message}: row {number} is {row!r:.60}")
+    return ShapeError(message)
 
 
 def _joined(parts: Iterable[Parts]) -> Parts:

@@ -7,6 +7,7 @@ rings.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -305,13 +306,13 @@ def _rings(polygon: Any, nonzero: bool) -> tuple[Floats, Indices]:
     """Return the points of all rings, and the start of each ring."""
     # With shapely geometries, `hasattr` would evaluate `__geo_interface__`, a full conversion.
     if (
-        isinstance(polygon, dict)
+        isinstance(polygon, Mapping)
         or geodata.is_shapely(polygon)
         or hasattr(polygon, "__geo_interface__")
         or (
             isinstance(polygon, list | tuple)
             and len(polygon)
-            and all(geodata.is_shapely(each) or isinstance(each, dict) for each in polygon)
+            and all(geodata.is_shapely(each) or isinstance(each, Mapping) for each in polygon)
         )
     ):
         return _rings_of_geometry(polygon, nonzero)

@@ -7,6 +7,7 @@ even-odd rule.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import count
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,8 +17,8 @@ from delone._base.arrays import as_plain_array, as_points, require_finite, wrong
 from delone._base.counting import counted
 from delone._base.extras import require
 from delone._base.georeference import transformed
-from delone.constrained.geodata import geometries_in, is_shapely, no_geometry
-from delone.errors import InputError
+from delone.constrained.geodata import geometries_in, is_shapely, no_geometry, parts_of
+from delone.errors import InputError, ShapeError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -110,12 +111,12 @@ def _features(given: Any) -> list[Any]:
         return list(given.geometries)
     if hasattr(given, "geometry") and hasattr(given.geometry, "values"):
         return list(given.geometry.values)
-    if not isinstance(given, dict) and not is_shapely(given):
+    if not isinstance(given, Mapping) and not is_shapely(given):
         given = getattr(given, "__geo_interface__", given)
-    if isinstance(given, dict):
+    if isinstance(given, Mapping):
         several = given.get("type") == "FeatureCollection"
         features: Any = given.get("features") if several else None
-        listed = hasattr(features, "__iter__") and not isinstance(features, dict | str | bytes)
+        listed = hasattr(features, "__iter__") and not isinstance(features, Mapping | str | bytes)
         return list(features) if listed else [given]
     if is_shapely(given) or _is_line(given):
         return [given]
@@ -138,7 +139,7 @@ def require_areas(given: Any, name: str) -> None:
 
 def _require_areas(feature: Any, name: str) -> None:
     """Reject a geometry that is neither a polygon nor a closed line."""
-    mapping = feature if isinstance(feature, dict) else None
+    mapping = feature if isinstance(feature, Mapping) else None
     if mapping is not None:
         geometry = mapping.get("geometry") if mapping.get("type") == "Feature" else mapping
         if not geometry:
@@ -161,7 +162,10 @@ def line_of(given: Any, *, name: str, crs: str | None) -> Floats:
     if len(lines) != 1 or len(lines[0]) < 2:
         found = "one of one point" if len(lines) == 1 else counted(len(lines), "line")
         raise InputError(f"{name} must be one line of at least two points, got {found}")
-    return np.ascontiguousarray(lines[0][:, :2])
+    points = np.ascontiguousarray(lines[0][:, :2])
+    if (points == points[0]).all():
+        raise InputError(f"{name} has no length: it needs two points that differ")
+    return points
 
 
 def _each(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
@@ -176,7 +180,7 @@ def _each(given: Any, name: str, number: count[int]) -> Iterator[Ring]:
         yield from _of_set(given, name, number)
     elif hasattr(given, "geometry") and hasattr(given.geometry, "values"):
         yield from _each(list(given.geometry.values), name, number)
-    elif isinstance(given, dict) or hasattr(given, "__geo_interface__"):
+    elif isinstance(given, Mapping) or hasattr(given, "__geo_interface__"):
         yield from _of_mapping(given, name, number)
     elif _is_line(given):
         yield Ring(_of_array(as_plain_array(given, name), name), LOOSE)
@@ -215,7 +219,15 @@ def _shape(mapping: Any, name: str) -> Any:
             return shape(mapping)
     # What shapely raises depends on the fault; most often it lacks a key.
     except Exception as error:
-        raise no_geometry(mapping, name) from error
+        refusal = no_geometry(mapping, name)
+        try:
+            parts_of(mapping, name=name)
+        except ShapeError as wrong:
+            # The row of coordinates that are not numbers.
+            refusal.args = (f"{refusal}: {wrong}",)
+        except InputError:
+            pass
+        raise refusal from error
 
 
 def _is_line(given: Any) -> bool:

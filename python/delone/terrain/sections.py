@@ -470,8 +470,6 @@ def cross_sections(  # noqa: PLR0917
         raise InputError("left and right are both 0: cross sections have no length")
     moved = np.append(True, (np.diff(alignment, axis=0) != 0).any(axis=1))
     alignment = alignment[moved]
-    if len(alignment) < 2:
-        raise InputError("line has no length: an alignment needs two points that differ")
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(alignment, axis=0).T)))
     origin = as_number(start, name="start")
     at = _stations(along[-1], interval, stations, origin)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from delone._base.uneven import uneven
 from delone.errors import DtypeError, ShapeError
 
 if TYPE_CHECKING:
@@ -118,7 +119,7 @@ def _rows(simplices: ArrayLike, name: str, width: int) -> NDArray[np.integer]:
     try:
         array = np.asarray(simplices)
     except ValueError as error:
-        raise ShapeError(f"{name} has rows of unequal length: {error}") from error
+        raise ShapeError(uneven(simplices, name)) from error
     if array.shape in ((0,), (0, width)):
         return np.empty((0, width), dtype=np.int64)
     if array.ndim != 2 or array.shape[1] != width:

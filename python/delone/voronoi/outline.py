@@ -7,6 +7,7 @@ large or small coordinates are multiplied by a power of two before they are pass
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -14,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone._base.georeference import transformed
-from delone.constrained.geodata import is_shapely, rings_of_numbers
-from delone.errors import InputError
+from delone.constrained.geodata import is_shapely, parts_of, rings_of_numbers
+from delone.errors import InputError, ShapeError
 from delone.exchange.geopandas import shapely_or_say
 
 if TYPE_CHECKING:
@@ -127,7 +128,7 @@ def _of_rings(clip: Any) -> Any:
     """Return the geometry of rings of coordinates or of several geometries; None for a box."""
     rings = rings_of_numbers(clip, "clip")
     if rings is None:
-        if len(clip) and all(is_shapely(each) or isinstance(each, dict) for each in clip):
+        if len(clip) and all(is_shapely(each) or isinstance(each, Mapping) for each in clip):
             return _together([_geometry(each) for each in clip])
         return None
     shapely = shapely_or_say()
@@ -192,7 +193,7 @@ def _geometry(clip: Any) -> Any:
         return clip
     if hasattr(clip, "geometries"):  # a GeometrySet
         return _together(clip.geometries)
-    if isinstance(clip, dict) or hasattr(clip, "__geo_interface__"):
+    if isinstance(clip, Mapping) or hasattr(clip, "__geo_interface__"):
         return _of_mapping(clip)
     return None
 
@@ -209,12 +210,19 @@ def _of_mapping(mapping: Any) -> Any:
     except Exception as error:
         if isinstance(error, InputError):
             raise
+        try:
+            parts_of(mapping, name="clip")
+        except ShapeError:
+            # It names the row of coordinates that are not numbers.
+            raise
+        except InputError:
+            pass
         raise _no_geometry(mapping, error) from error
 
 
 def _typed(mapping: Any) -> Any:
     """Return a mapping that has a type; shapely would not report that it is missing."""
-    kind = mapping.get("type") if isinstance(mapping, dict) else None
+    kind = mapping.get("type") if isinstance(mapping, Mapping) else None
     if not isinstance(kind, str):
         why = "it has no type" if kind is None else f"its type is {kind!r:.40}"
         raise _no_geometry(mapping, why)
