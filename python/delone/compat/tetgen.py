@@ -216,7 +216,7 @@ class TetGen:
         nobisect : bool, optional
             Whether all triangles are faces of the result. Otherwise, triangles in one plane may be
             cut again, as with ``boundary="surface"`` of `delone.tetrahedralize`, and points are
-            added on the surface if volumes are bounded.
+            added on the surface where quality or volumes require it.
         steinerleft : int, optional
             The maximum number of points that are added for shapes and volumes, and of points
             besides the input at any earlier time; -1 for the default limit.
