@@ -35,7 +35,7 @@ DRAWN = (
 VALUE = "a step of a numerical method, which changes values and not what is joined to what"
 
 ALLOWED: dict[str, dict[str, str]] = {
-    "_tiling/higher/thin.py": {"distance > _ROUNDINGS * (np.abs(normal) * unit).sum()": WARNED},
+    "_tiling/higher/thin.py": {"distance <= _ROUNDINGS * (np.abs(vectors) @ unit)": WARNED},
     # An error, where holes and parts share more than a rounding error.
     "areal/nested.py": {
         "shared.areas >= (1 - _SHARED) * known.areas[hole]": WANTED,
