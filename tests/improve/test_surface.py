@@ -79,7 +79,7 @@ def test_the_order_of_rows_changes_nothing() -> None:
     assert first == {tuple(sorted(order[v].tolist())) for v in two.simplices}
 
 
-@pytest.mark.parametrize("power", [-400, -30, 300])
+@pytest.mark.parametrize("power", [-1000, -900, -400, -30, 300, 1000])
 def test_powers_of_two_change_nothing(power: int) -> None:
     points = box(120, 90)[:-8]
     one = delone.improve(delone.Delaunay(points), boundary="surface", tolerance=0.1)
@@ -91,6 +91,13 @@ def test_powers_of_two_change_nothing(power: int) -> None:
     assert np.array_equal(np.ldexp(one.points, power), two.points)
     assert np.array_equal(one.simplices, two.simplices)
     assert np.ldexp(one.report.surface_distance, power) == two.report.surface_distance
+
+
+@pytest.mark.parametrize("power", [-1019, -1022, -1060])
+def test_subnormal_coordinates_are_valid(power: int) -> None:
+    # They have fewer bits, so results differ from those of other scales.
+    points = np.ldexp(np.random.default_rng(0).random((60, 3)), power)
+    assert delone.improve(delone.Delaunay(points)).validate()
 
 
 def test_the_interface_of_regions_stays_in_its_plane() -> None:

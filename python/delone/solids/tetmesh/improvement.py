@@ -142,6 +142,9 @@ def improve(
     positively oriented by the exact predicate. So the smallest dihedral angle of a mesh never
     becomes smaller, and the iteration terminates, since no state repeats.
 
+    Scaling all coordinates by a power of two changes nothing, as long as neither they nor those of
+    the result are subnormal (below 2.3e-308): these have fewer bits, and less is improved.
+
     With ``boundary="surface"``, a boundary vertex moves only if all boundary triangles around it
     are exactly in one plane, or if it is exactly between two neighbors on an edge where planes
     meet, and only to positions that are exactly in the same planes. Planes and edges that are

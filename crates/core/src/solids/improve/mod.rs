@@ -53,7 +53,7 @@ use crate::base::watch::Watch;
 
 /// Improves tetrahedra.
 pub fn improve(task: Task, watch: &Watch, tell: Tell) -> Result<Improved> {
-    changed(task, |work| work.run(watch, tell))
+    changed(task, |work| work.run(watch, &mut *tell))
 }
 
 /// Removes vertices of tetrahedra, no two of which are neighbors, where the bound allows it.
@@ -77,7 +77,7 @@ pub fn relax(task: Task, target: Target, watch: &Watch) -> Result<Improved> {
 /// Imports tetrahedra, changes them and exports them; `change` returns whether it was completed.
 fn changed<'a>(
     task: Task<'a>,
-    change: impl FnOnce(&mut work::Work<'a>) -> Result<bool>,
+    mut change: impl FnMut(&mut work::Work<'a>) -> Result<bool>,
 ) -> Result<Improved> {
     for (given, n, name) in [
         (task.labels.len(), task.simplices.len(), "labels"),
@@ -88,12 +88,20 @@ fn changed<'a>(
             return Err(Error::Shape(format!("{name} has {given} entries, not {n}")));
         }
     }
-    let imported = import(task)?;
-    let scaled = Task {
-        tolerance: task.tolerance * imported.scale,
-        ..task
-    };
-    let mut work = work::Work::new(imported.store, scaled, &imported.rows)?;
-    let exhausted = !change(&mut work)?;
-    order::export(work, task, imported.rows, imported.scale, exhausted)
+    // Once more without scaling only if a coordinate of the result would be rounded, as it is
+    // subnormal: a tetrahedron might be turned over.
+    let mut tiny = true;
+    loop {
+        let imported = import(task, tiny)?;
+        let scaled = Task {
+            tolerance: task.tolerance * imported.scale,
+            ..task
+        };
+        let mut work = work::Work::new(imported.store, scaled, &imported.rows)?;
+        let exhausted = !change(&mut work)?;
+        if !tiny || order::is_exact(&work.store.points, imported.scale) {
+            return order::export(work, task, imported.rows, imported.scale, exhausted);
+        }
+        tiny = false;
+    }
 }

@@ -20,11 +20,13 @@ pub struct Imported {
 }
 
 /// The power of two that scales coordinates to near 1, where products of their differences neither
-/// overflow nor underflow; 1 if it would round some of them.
-fn scale(points: &[Point3]) -> f64 {
+/// overflow nor underflow; 1 if it would round some of them. Results for `tiny` coordinates may be
+/// rounded when they are scaled back.
+fn scale(points: &[Point3], tiny: bool) -> f64 {
     let all = points.as_flattened();
     let largest = all.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-    if (1e-20..1e20).contains(&largest) || largest < 1e-270 {
+    let least = if tiny { f64::MIN_POSITIVE } else { 1e-270 };
+    if (1e-20..1e20).contains(&largest) || largest < least {
         return 1.0;
     }
     let scale = 2_f64.powi(-(largest.log2() as i32));
@@ -52,8 +54,8 @@ pub fn rotated(v: Corners) -> Corners {
     all.into_iter().fold(v, |least, other| least.min(other))
 }
 
-/// Sorts and checks everything.
-pub fn import(task: Task) -> Result<Imported> {
+/// Sorts and checks everything; `tiny` coordinates are scaled as well.
+pub fn import(task: Task, tiny: bool) -> Result<Imported> {
     let mut used = filled(task.points.len(), false)?;
     for v in task.simplices.as_flattened() {
         used[*v as usize] = true;
@@ -68,7 +70,7 @@ pub fn import(task: Task) -> Result<Imported> {
             same[0], same[1]
         )));
     }
-    let scale = scale(task.points);
+    let scale = scale(task.points, tiny);
     let mut points = with_room(rows.len())?;
     points.extend(rows.iter().map(|row| at(row).map(|x| x * scale)));
     let mut place = filled(task.points.len(), NONE)?;
@@ -131,6 +133,12 @@ fn whole_stars(store: &mut Store, task: Task, rows: &[u32]) -> Result<()> {
 fn star_size(store: &Store, v: u32, star: &mut Vec<u32>) -> Result<u32> {
     store.star(v, star)?;
     Ok(star.len() as u32)
+}
+
+/// Whether coordinates can be scaled back without rounding.
+pub fn is_exact(points: &[Point3], scale: f64) -> bool {
+    let all = points.as_flattened();
+    all.iter().all(|x| x / scale * scale == *x)
 }
 
 /// Converts everything to rows, with tetrahedra sorted by their vertices.

@@ -80,21 +80,24 @@ pub fn import(given: &Given) -> Result<(Mesh, Order)> {
     if given.sources.len() != count || given.markers.len() != count {
         return Err(Error::Shape("faces need a source and a marker each".into()));
     }
-    let Imported { store, rows, scale } = improve::import(improve::Task {
-        points: given.points,
-        simplices: given.simplices,
-        labels: given.labels,
-        fixed: &[],
-        removable: &[],
-        min_angle: 0.0,
-        flips: false,
-        smooth: false,
-        exude: false,
-        turn: false,
-        tolerance: 0.0,
-        passes: 0,
-        most: 0,
-    })?;
+    let Imported { store, rows, scale } = improve::import(
+        improve::Task {
+            points: given.points,
+            simplices: given.simplices,
+            labels: given.labels,
+            fixed: &[],
+            removable: &[],
+            min_angle: 0.0,
+            flips: false,
+            smooth: false,
+            exude: false,
+            turn: false,
+            tolerance: 0.0,
+            passes: 0,
+            most: 0,
+        },
+        false,
+    )?;
     let mut place = repeated(given.points.len(), NONE)?;
     for (v, &row) in (0..).zip(&rows) {
         place[row as usize] = v;
