@@ -1,4 +1,4 @@
-//! Triangulations and hulls in four and five dimensions: proven by integers, and the same for every order
+//! Triangulations and hulls in four to eight dimensions: proven by integers, and the same for every order
 //! of the rows.
 //!
 //! Simplices are judged by the validator of the core, which decides each facet exactly; hulls by the
@@ -19,14 +19,17 @@ use delone_core::ndim::{
 use delone_fuzz::Coordinates;
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 
-/// More points make a run slower; ties among few are harder.
-const MOST: usize = 14;
+/// More points make a run slower, more so in many dimensions; ties among few are harder.
+const MOST: [usize; 5] = [14, 14, 12, 11, 11];
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let mut bytes = Unstructured::new(bytes);
-    match bytes.arbitrary() {
-        Ok(true) => read(&mut bytes).map_or((), |points| check::<4, 5, 4>(&points)),
-        Ok(false) => read(&mut bytes).map_or((), |points| check::<5, 6, 8>(&points)),
+    match bytes.int_in_range(4..=8) {
+        Ok(4) => read(&mut bytes).map_or((), |points| check::<4, 5, 4>(&points)),
+        Ok(5) => read(&mut bytes).map_or((), |points| check::<5, 6, 8>(&points)),
+        Ok(6) => read(&mut bytes).map_or((), |points| check::<6, 7, 8>(&points)),
+        Ok(7) => read(&mut bytes).map_or((), |points| check::<7, 8, 8>(&points)),
+        Ok(_) => read(&mut bytes).map_or((), |points| check::<8, 9, 8>(&points)),
         Err(_) => {}
     }
 });
@@ -34,7 +37,7 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
 /// Points of a lattice, of a sphere in a lattice, or with any coordinates.
 fn read<const D: usize>(bytes: &mut Unstructured) -> Result<Vec<[f64; D]>> {
     let shape = bytes.int_in_range(0..=2)?;
-    let count = bytes.int_in_range(1..=MOST)?;
+    let count = bytes.int_in_range(1..=MOST[D - 4])?;
     let side = bytes.int_in_range(1..=3_i32)?;
     let mut coordinates = Coordinates::new(bytes)?;
     let mut points = Vec::new();
