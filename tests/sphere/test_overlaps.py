@@ -395,3 +395,15 @@ def test_a_long_cell_whose_first_corner_is_in_its_middle() -> None:
         shared = Overlaps(long, rows)
         assert abs(shared.covered_source[0] - 1) < 1e-14
         assert abs(shared.areas.sum() / long.areas[0] - 1) < 1e-14
+
+
+def test_concave_cells_with_a_corner_in_their_middle() -> None:
+    """The place outside of a cell, opposite to its middle, is then opposite to that corner."""
+    notched = [(-1, 1, -1), (-1, -1, 1), (1, -1, -1), (-1, -1, -1)]
+    octants = np.array(list(itertools.product((-1, 1), repeat=3)))[:, None] * np.eye(3)
+    for signs in octants.sum(axis=1):
+        cell = Grid.from_mesh(np.array([notched]) * signs, winding="smaller")
+        assert len(cell.report.concave) == 1
+        for other in (cell, Grid.from_mesh(octants), Grid.from_gaussian(4)):
+            for found in (Overlaps(cell, other).areas, Overlaps(other, cell).areas):
+                assert found.sum() == pytest.approx(2 * np.pi / 3, rel=1e-15)

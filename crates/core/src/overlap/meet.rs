@@ -214,10 +214,20 @@ impl Cell {
     /// the center, or a little beside that.
     fn outside(&self, q: Point3) -> Option<Point3> {
         let c = self.center;
-        let turned = [c[1], c[2], c[0]];
+        // Toward the axis that is farthest from the center, which is not in its direction.
+        let axis = (1..3).fold(
+            0,
+            |low: usize, k| {
+                if c[k].abs() < c[low].abs() { k } else { low }
+            },
+        );
         [0.0, 1e-7, -1e-7]
             .into_iter()
-            .map(|shift| leveled([0, 1, 2].map(|k| -c[k] + shift * turned[k])))
+            .map(|shift| {
+                let mut r = c.map(|x| -x);
+                r[axis] += shift;
+                leveled(r)
+            })
             .find(|&r| heads(&cross_of(q, r)) != [0.0; 3])
     }
 
