@@ -267,3 +267,14 @@ def test_a_layer_may_be_flat() -> None:
     flat = np.array([(0, 0), (1, 0), (1, 2.0**-510), (0, 2.0**-510)])
     for layer in (flat, flat[:, ::-1]):
         assert Overlaps([layer], [layer]).report.source_empty.tolist() == [0]
+
+
+def test_a_small_cell_at_a_concave_one_that_is_much_larger() -> None:
+    """Terms are measured from near the small cell, not from the far ends of long sides."""
+    s, far, x, y = 5.826450433232822e-13, 34908416.0, 34903040.0, 69816832.0
+    small = [(-9.813414948212085e-6, s), (s, s), (s, -1.4210854715202004e-14)]
+    # What is between two lines from the origin, and a spike.
+    large = [(far, far), (far, 1e-26), (far, far), (x, y), (0, 0)]
+    expected = s * s * (1 - x / y) / 2
+    for found in (delone.Overlaps([small], [large]), delone.Overlaps([large], [small])):
+        assert found.areas.tolist() == pytest.approx([expected], rel=1e-13)

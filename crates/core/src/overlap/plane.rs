@@ -8,9 +8,9 @@
 //! # Errors
 //!
 //! Terms are computed as pairs of doubles relative to a corner of the smaller cell, of extent s. The
-//! end of a term is in both cells, and its start the start of a side, at most the length L of that
-//! away: so a term errs by 2^-100 L s, and a crossing is off by 2^-103 L, which changes an area by
-//! as much times s. On lines that are nearly parallel, a crossing errs along both, which changes the
+//! end of a term is in both cells, and its start in a side, near that corner if the side is long: at
+//! most some s away. A crossing is off by 2^-103 L, where L is the length of a side, which changes an
+//! area by as much times s. From the start of a side, it would be as much times L. On lines that are nearly parallel, a crossing errs along both, which changes the
 //! two terms alike; parallel lines do not cross, as one of them has moved.
 
 use std::cmp::Ordering;
@@ -37,6 +37,9 @@ const LEAST: f64 = 1e-28;
 /// Smaller parts, over the square of the extent of the smaller cell, cannot be distinguished from
 /// cells that only touch.
 const TINY: f64 = 1e-24;
+
+/// Sides that are longer than this many times the smaller cell are measured from near it.
+const LONG: f64 = 1024.0;
 
 /// A corner and the side that starts there.
 #[derive(Clone, Copy)]
@@ -336,6 +339,8 @@ struct Doubled<'a> {
     p: &'a Region,
     q: &'a Region,
     origin: Point2,
+    /// The extent of the smaller cell.
+    size: f64,
     sum: Pair,
     /// The side of the first cell, and where it is measured from.
     e: u32,
@@ -343,6 +348,24 @@ struct Doubled<'a> {
 }
 
 impl Doubled<'_> {
+    /// Where terms of a side start: at its start, or near the origin if it is long.
+    ///
+    /// It is the same place for all terms of a side, so it need not be the nearest one.
+    fn base(&self, [a, b]: [Point2; 2]) -> [Pair; 2] {
+        let start = from(self.origin, a);
+        let [x, y] = [0, 1].map(|k| b[k] - a[k]);
+        let length = x.abs().max(y.abs());
+        if length <= LONG * self.size || length == f64::INFINITY {
+            return start;
+        }
+        let [x, y] = [x / length, y / length];
+        let ahead = [0, 1].map(|k| -start[k].hi / length);
+        let share = (ahead[0] * x + ahead[1] * y) / (x * x + y * y);
+        let along = from(a, b);
+        let share = pair(share.clamp(0.0, 1.0));
+        [0, 1].map(|k| start[k] + along[k] * share)
+    }
+
     fn add(&mut self, base: &[Pair; 2], x: &[Pair; 2], minus: bool) {
         let term = cross(base, x);
         self.sum = if minus {
@@ -392,7 +415,7 @@ impl Pieces for Doubled<'_> {
 
 impl Sum for Doubled<'_> {
     fn side(&mut self, e: u32) {
-        (self.e, self.from) = (e, from(self.origin, self.p.ends(e)[0]));
+        (self.e, self.from) = (e, self.base(self.p.ends(e)));
     }
 
     fn first(&mut self) {
@@ -405,13 +428,13 @@ impl Sum for Doubled<'_> {
         let x = self.place(self.e, f, leaves);
         let base = self.from;
         self.add(&base, &x, !leaves);
-        let base = self.corner(true, f);
+        let base = self.base(self.q.ends(f));
         self.add(&base, &x, leaves);
     }
 
     fn second(&mut self, f: u32) {
         let ends = self.q.ends(f);
-        let [base, end] = ends.map(|v| from(self.origin, v));
+        let (base, end) = (self.base(ends), from(self.origin, ends[1]));
         self.add(&base, &end, false);
     }
 }
@@ -428,6 +451,7 @@ pub fn shared(p: &Region, q: &Region, work: &mut Work, pace: &mut Pace) -> Resul
         p,
         q,
         origin: small.corners[0].v,
+        size,
         sum: ZERO,
         e: 0,
         from: [ZERO; 2],
