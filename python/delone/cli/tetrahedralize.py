@@ -86,9 +86,9 @@ def fill(
     tolerance: Annotated[
         float | None,
         typer.Option(
-            help="How far the mesh may be from the file's surface, in its unit. With --imprint, join "
-            "vertices, edges and faces that are closer; with --boundary surface and sizes or bounds "
-            "on shapes, join triangles that are this close to one plane."
+            help="How far the mesh may be from the surface of the file, in its unit. With "
+            "--imprint, join vertices, edges and faces that are closer; with --boundary surface "
+            "and sizes or bounds on shapes, join triangles that are this close to one plane."
         ),
     ] = None,
     hole: Annotated[
