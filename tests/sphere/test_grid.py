@@ -270,10 +270,32 @@ def test_polygons_of_shapely() -> None:
     assert np.allclose(again.areas, grid.areas, rtol=1e-12)
     with pytest.raises(delone.InputError, match="projected"):
         Grid.from_polygons(table.to_crs(3857))
-    with pytest.raises(delone.InputError, match="geometry 1 is a POINT"):
+    with pytest.raises(delone.InputError, match="geometry 1 is or contains a POINT"):
         Grid.from_polygons([hole, shapely.Point(0, 0)])
     with pytest.raises(delone.InputError, match="is not a geometry"):
         Grid.from_polygons(dict)
+
+
+def test_polygons_of_collections_and_rings() -> None:
+    shapely = pytest.importorskip("shapely")
+    one, two = shapely.box(0, 0, 10, 10), shapely.box(20, 0, 30, 10)
+    deep = shapely.GeometryCollection(
+        [shapely.GeometryCollection([one]), shapely.MultiPolygon([two])]
+    )
+    grid = Grid.from_polygons([deep, None, one, shapely.GeometryCollection()])
+    assert grid.report.empty.tolist() == [1, 3]
+    assert grid.areas[0] == pytest.approx(2 * grid.areas[2], rel=1e-14)
+    rings = [np.array(one.exterior.coords)[:-1], list(two.exterior.coords)]
+    assert np.array_equal(Grid.from_polygons(rings).areas, Grid.from_polygons([one, two]).areas)
+    line = shapely.GeometryCollection([one, shapely.LineString([(0, 0), (1, 1)])])
+    with pytest.raises(delone.InputError, match="geometry 1 is or contains a LINESTRING"):
+        Grid.from_polygons([one, line])
+    with pytest.raises(delone.ShapeError, match=r"ring 1 must have shape .* got \(2, 2\)"):
+        Grid.from_polygons([rings[0], [(0, 0), (1, 0)]])
+    with pytest.raises(delone.ShapeError, match=r"ring 0 must have shape .* got \(3, 3\)"):
+        Grid.from_polygons([[(0, 0, 1), (1, 0, 1), (1, 1, 1)]])
+    with pytest.raises(delone.ShapeError, match="ring 0"):
+        Grid.from_polygons([(0, 0), (1, 0), (1, 1)])
 
 
 def test_tables_of_cells() -> None:

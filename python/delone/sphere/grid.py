@@ -479,8 +479,9 @@ class Grid(GridCells):
         Parameters
         ----------
         geometries : geometry, iterable of geometries, GeoSeries or GeoDataFrame
-            Shapely polygons and multipolygons, one cell each; None and empty geometries are empty
-            cells. Geographic reference systems only.
+            Shapely polygons, multipolygons and collections of these, or rings of longitudes and
+            latitudes of shape (k, 2), one cell each; None and empty geometries are empty cells.
+            Geographic reference systems only.
         winding : {"smaller", "ccw", "cw"}, optional
             As for `from_mesh`, but for outer rings: "ccw" for GeoJSON, "cw" for shapefiles. The
             majority of their sides decides.
@@ -498,6 +499,8 @@ class Grid(GridCells):
         InputError
             A geometry is not a polygon, or its reference system is projected; `winding` is unknown,
             or the outer rings of a geometry run in both directions.
+        ShapeError
+            A ring has fewer than 3 corners, or corners that are not two numbers.
         DirectionError
             As for `from_curvilinear`; or a hole is not inside its outer ring, or holes or parts of
             a geometry overlap. A part inside a hole of another part is valid.

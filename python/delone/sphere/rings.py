@@ -28,6 +28,11 @@ if TYPE_CHECKING:
     from delone._base.types import Floats, Rows
     from delone.sphere.voronoi import Voronoi
 
+# Shapely's numbers of polygons, multipolygons and no geometry, and of collections.
+_AREAL = (3, 6, -1)
+_COLLECTION = 7
+_FEWEST = 3
+
 __all__ = [
     "WIDE",
     "Rings",
@@ -267,29 +272,54 @@ def _no_shape(given: Any) -> InputError:
     return error
 
 
+def _shapes(table: Any) -> NDArray[Any]:
+    """Return shapely geometries; rings of coordinates become polygons."""
+    shapely = require("shapely", extra="geo", what="a grid of polygons")
+    if isinstance(table, shapely.Geometry):
+        table = [table]
+    if isinstance(table, str | bytes | Mapping | type) or not hasattr(table, "__iter__"):
+        raise _no_shape(table)
+    rows = list(table)
+    items = np.empty(len(rows), dtype=object)
+    for row, item in enumerate(rows):
+        if isinstance(item, list | tuple | np.ndarray):
+            items[row] = shapely.Polygon(_ring(item, row))
+        elif item is None or isinstance(item, shapely.Geometry):
+            items[row] = item
+        else:
+            raise _no_shape(item)
+    return items
+
+
+def _ring(given: Any, row: int) -> Floats:
+    """Return a ring of longitudes and latitudes."""
+    ring = as_plain_array(given, f"ring {row}")
+    if ring.ndim != 2 or ring.shape[1] != 2 or len(ring) < _FEWEST:
+        raise wrong_shape(f"ring {row}", "(k, 2) with at least 3 corners", ring)
+    return as_points(ring, ndim=2, name=f"ring {row}")
+
+
 def geometries(given: Any, *, degrees: bool, workers: int | None) -> Rings:
-    """Return the rings of shapely polygons, one cell for each geometry."""
+    """Return the rings of polygons, one cell for each geometry."""
     shapely = require("shapely", extra="geo", what="a grid of polygons")
     crs = crs_of(given)
     if crs is not None and not is_geographic(crs):
         raise InputError(
             "the polygons have a projected reference system: transform them with to_crs(4326)"
         )
-    table = getattr(given, "geometry", given)
-    if isinstance(table, shapely.Geometry):
-        table = [table]
-    if isinstance(table, str | bytes | Mapping | type) or not hasattr(table, "__iter__"):
-        raise _no_shape(table)
-    items = np.array([item for item in table], dtype=object)  # noqa: C416
-    for item in items[~shapely.is_valid_input(items)]:
-        raise _no_shape(item)
-    polygon = {3, 6}
-    kinds = shapely.get_type_id(items)
-    wrong = [k for k, kind in enumerate(kinds.tolist()) if kind not in polygon and kind != -1]
-    if wrong:
+    items = _shapes(getattr(given, "geometry", given))
+    # Collections may contain collections.
+    parts, of_item = items, np.arange(len(items))
+    while (shapely.get_type_id(parts) == _COLLECTION).any():
+        parts, of_part = shapely.get_parts(parts, return_index=True)
+        of_item = of_item[of_part]
+    kinds = shapely.get_type_id(parts)
+    wrong = np.flatnonzero(~np.isin(kinds, _AREAL))
+    if len(wrong):
         what = shapely.GeometryType(kinds[wrong[0]]).name
-        raise InputError(f"geometry {wrong[0]} is a {what}, not a polygon")
-    parts, of_item = shapely.get_parts(items, return_index=True)
+        raise InputError(f"geometry {of_item[wrong[0]]} is or contains a {what}, not a polygon")
+    parts, of_part = shapely.get_parts(parts, return_index=True)
+    of_item = of_item[of_part]
     rings, of_part = shapely.get_rings(parts, return_index=True)
     holes = np.concatenate(([False], of_part[1:] == of_part[:-1])) if len(of_part) else of_part
     places, of_ring = shapely.get_coordinates(rings, return_index=True)
