@@ -308,7 +308,7 @@ def test_fixed_points_behind_removed_ones_are_known_in_the_report() -> None:
     corners = better.points[better.simplices[better.report.below]].tolist()
     for cause, places in zip(better.report.cause, corners, strict=True):
         every = all(tuple(place) in held for place in places)
-        assert every == (cause == "boundary") or cause in ("angle", "rounding")
+        assert every == (cause == "boundary") or cause in ("angle", "rounding", "face")
 
 
 def test_saved_meshes_have_the_report(tmp_path: Path) -> None:

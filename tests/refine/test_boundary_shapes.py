@@ -244,3 +244,31 @@ def test_joined_sides_enclose_nearly_the_same_volume() -> None:
         )
     assert abs(total / 6 - 1) < Fraction(12, 10**6)
     assert all(a <= b for a, b in pairwise(sorted(mesh.volumes.tolist())))
+
+
+def test_thin_faces_are_named_as_the_cause() -> None:
+    mesh = delone.tetrahedralize(*prism(24, 5.0), radius_edge=2, min_angle=20)
+    report = mesh.report.improvement
+    assert report is not None
+    rows = report.below[report.cause == "face"]
+    assert len(rows)
+    assert "thin face of the boundary" in str(report)
+    # Each has a face on the boundary with an angle below the goal, and no angle between two faces.
+    for row in rows.tolist():
+        angles = []
+        for k in range(4):
+            if mesh.neighbors[row, k] < 0:
+                a, b, c = mesh.points[np.delete(mesh.simplices[row], k)]
+                for p, q, r in ((a, b, c), (b, c, a), (c, a, b)):
+                    u, v = q - p, r - p
+                    angles.append(np.degrees(np.arctan2(np.linalg.norm(np.cross(u, v)), u @ v)))
+        assert min(angles) < 20
+    # Other causes have no such face.
+    other = report.below[~np.isin(report.cause, ("face", "angle", "rounding"))]
+    for row in other.tolist():
+        for k in range(4):
+            if mesh.neighbors[row, k] < 0:
+                a, b, c = mesh.points[np.delete(mesh.simplices[row], k)]
+                for p, q, r in ((a, b, c), (b, c, a), (c, a, b)):
+                    u, v = q - p, r - p
+                    assert np.arctan2(np.linalg.norm(np.cross(u, v)), u @ v) > np.radians(19.99)

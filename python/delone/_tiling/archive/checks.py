@@ -198,7 +198,7 @@ def _check_improvement(**arrays: NDArray[Any]) -> None:
     require(arrays["after"].sum() == nsimplex, "after does not count all tetrahedra")
     check_range("below", arrays["below"], 0, nsimplex)
     require((np.diff(arrays["below"]) > 0).all(), "below is out of order")
-    check_range("cause", arrays["cause"], 0, 5)
+    check_range("cause", arrays["cause"], 0, 6)
     edges = arrays["wall_edges"]
     require(len(edges) == len(arrays["below"]), "wall_edges and below do not match")
     check_range("wall_edges", edges, -1, len(arrays["points"]))

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["CAUSES", "COUNTS", "Changed", "ImproveReport", "report"]
 
-CAUSES = ("angle", "boundary", "budget", "other", "rounding")
-_ANGLE, _BOUNDARY, _BUDGET, _OTHER, _ROUNDING = range(5)
+CAUSES = ("angle", "boundary", "budget", "other", "rounding", "face")
+_ANGLE, _BOUNDARY, _BUDGET, _OTHER, _ROUNDING, _FACE = range(6)
 # Coordinates of rotated points have several rounding errors each: a product for every axis, their
 # sum, and a shift. In thin tetrahedra, all four points are off their plane.
 _ROUNDINGS = 16
@@ -126,8 +126,9 @@ class ImproveReport(ReadOnly):
         The tetrahedra below the goal, ascending.
     cause : ndarray of str, shape (j,)
         For each of these, ``"rounding"`` (it is as thin as the rounding errors of coordinates: up
-        to 16 times that of the largest), ``"angle"`` (the boundary has this angle), ``"boundary"``
-        (all four vertices are on the boundary, or fixed), ``"budget"`` (the limit on passes) or
+        to 16 times that of the largest), ``"angle"`` (the boundary has this angle), ``"face"`` (one
+        of its faces is on the boundary, and has a plane angle below the goal), ``"boundary"`` (all
+        four vertices are on the boundary, or fixed), ``"budget"`` (the limit on passes) or
         ``"other"`` (no single removal or move is an improvement).
     wall_edges : ndarray of int64, shape (j, 2)
         For the cause ``"angle"``, the edge at which two faces of the boundary, of regions or of the
@@ -265,6 +266,7 @@ class ImproveReport(ReadOnly):
 _SENTENCES = {
     "rounding": "as thin as the rounding of coordinates",
     "angle": "because of the angle of the boundary",
+    "face": "at a thin face of the boundary, which has a plane angle below that",
     "boundary": "with all vertices fixed or on the boundary",
     "budget": "because of the limit on passes",
     "other": "that no single change improves",
@@ -287,6 +289,8 @@ def report(
     cause = np.full(len(below), _BUDGET if made.exhausted else _OTHER)
     held = _on_walls(simplices, walls, len(points)) | fixed
     cause[held[simplices[below]].all(axis=1)] = _BOUNDARY
+    thin = _plane_angles(points, simplices[below]) < min_angle
+    cause[(thin & walls[below]).any(axis=1)] = _FACE
     wall_edges = _wall_edges(points, simplices[below], walls[below], min_angle)
     cause[wall_edges[:, 0] >= 0] = _ANGLE
     cause[_thin(points, simplices[below], after.volume[below])] = _ROUNDING
@@ -349,6 +353,22 @@ def _on_walls(simplices: Indices, walls: NDArray[np.bool_], npoints: int) -> NDA
     for k, face in enumerate(quality.FACES):
         held[simplices[walls[:, k]][:, list(face)]] = True
     return held
+
+
+def _plane_angles(points: Floats, simplices: Indices) -> Floats:
+    """Return the smallest angle of the face opposite each corner, in degrees, shape (m, 4)."""
+    found = np.empty((len(simplices), 4))
+    for k, face in enumerate(quality.FACES):
+        corners = points[simplices[:, list(face)]]
+        # Relative to the longest side, so that products stay within the doubles.
+        sides = corners[:, [1, 2, 0]] - corners
+        lengths = np.linalg.norm(sides / np.abs(sides).max(axis=(1, 2))[:, None, None], axis=2)
+        shortest, middle, longest = np.sort(lengths, axis=1).T
+        # The half-angle formula for the angle opposite the shortest side is stable for needles.
+        between = (shortest - (longest - middle)) * (shortest + (longest - middle))
+        half = np.sqrt(np.maximum(between, 0) / (4 * longest * middle))
+        found[:, k] = np.degrees(2 * np.arcsin(np.minimum(half, 1)))
+    return found
 
 
 def _wall_edges(
