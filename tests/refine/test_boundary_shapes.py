@@ -177,24 +177,74 @@ def test_markers_separate_nearly_flat_sides() -> None:
     assert np.allclose(*areas, atol=1e-5)
 
 
-def test_a_tolerance_above_a_gap_is_refused_or_harmless() -> None:
-    # Two boxes with rough sides, closer to each other than the tolerance.
+def test_sides_that_would_cross_are_refused() -> None:
+    """Two blocks with rough sides that fit into each other, closer than the tolerance."""
+    points, faces = box(6)
+    local = np.round(points @ TURN.T, 3)
     rng = np.random.default_rng(5)
-    points, faces = box(4)
-    local = points @ TURN.T
-    local[:, 0] += rng.uniform(-0.02, 0.02, len(local))
-    twin = local * [-1, 1, 1]
-    gap = max(0.0, -2 * local[:, 0].min())
-    apart = np.array([gap / 2 + 1e-4, 0, 0])
-    both = np.vstack((local + apart, twin - apart))
+    rough = local.copy()
+    side = local[:, 0] == 0
+    rough[side, 0] += rng.uniform(-0.02, 0.02, int(side.sum()))
+    twin = rough * [1, 1, 1]
+    twin[~side] *= [-1, 1, 1]
+    twin[side, 0] -= 0.001
+    both = np.vstack((rough, twin))
     rows = np.vstack((faces, faces[:, [0, 2, 1]] + len(points)))
-    try:
-        mesh = meshed((both, rows), size=0.2, tolerance=0.04)
-    except InputError as error:
-        assert "tolerance=0.04" in str(error)
-    else:
-        check = delone.check_surface(mesh.points, mesh.input_faces)
-        assert not check.crossing.any()
+    meshed((both, rows), size=0.2)
+    with pytest.raises(
+        InputError, match=r"faces \d+ and \d+ would cross .* tolerance=0.03: give a"
+    ):
+        meshed((both, rows), size=0.05, tolerance=0.03)
+
+
+LIP = np.array([(0, 0), (1, 0), (1, 0.05), (0.3, 0.05), (0.3, 0.5), (0, 0.5)])
+
+
+def lip() -> tuple[Floats, Indices]:
+    """A block with a thin lip."""
+    n = len(LIP)
+    points = np.array([(x, y, z) for y in (0, 1) for x, z in LIP], dtype=float)
+    faces = []
+    for i in range(n):
+        j = (i + 1) % n
+        faces += [(i, j, n + j), (i, n + j, n + i)]
+    for a, b, c in ((0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5)):
+        faces += [(a, c, b), (n + a, n + b, n + c)]
+    return points, np.array(faces)
+
+
+@pytest.mark.parametrize(
+    ("options"),
+    [
+        {"size": 0.15, "tolerance": 0.1},
+        {"radius_edge": 2, "tolerance": 0.051},
+        {"size": 0.2, "tolerance": 0.4},
+    ],
+)
+def test_the_sides_of_a_sheet_thinner_than_the_tolerance_are_not_joined(
+    options: dict[str, Any],
+) -> None:
+    mesh = delone.tetrahedralize(*lip(), boundary="surface", inside="enclosed", **options)
+    assert mesh.validate()
+    assert mesh.volumes.sum() == pytest.approx(0.185, rel=1e-12)
+
+
+def test_thin_layers_and_voids_keep_their_volumes() -> None:
+    def slab(low: float, high: float, inset: float) -> Floats:
+        at = (inset, 1 - inset)
+        return np.array([(x, y, z) for x in at for y in at for z in (low, high)])
+
+    def closed(*bodies: Floats) -> tuple[Floats, Indices]:
+        hulls = [delone.ConvexHull(body) for body in bodies]
+        starts = np.cumsum([0, *(len(hull.points) for hull in hulls)])
+        faces = [h.simplices + s for h, s in zip(hulls, starts[:-1], strict=True)]
+        return np.concatenate([hull.points for hull in hulls]), np.concatenate(faces)
+
+    plate = closed(slab(0, 0.01, 0))
+    assert meshed(plate, tolerance=0.0101).volumes.sum() == pytest.approx(0.01, rel=1e-12)
+    void = closed(slab(0, 1, 0), slab(0.5, 0.52, 0.2))
+    mesh = meshed(void, tolerance=0.021, inside="parity", size=0.3)
+    assert mesh.volumes.sum() == pytest.approx(1 - 0.36 * 0.02, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -206,6 +256,8 @@ def test_a_tolerance_above_a_gap_is_refused_or_harmless() -> None:
         ({"tolerance": -1, "boundary": "surface", "size": 1}, "tolerance"),
         ({"tolerance": np.nan, "boundary": "surface", "size": 1}, "tolerance"),
         ({"tolerance": np.inf, "boundary": "surface", "size": 1}, "tolerance"),
+        ({"tolerance": 3, "boundary": "surface", "size": 1}, "larger than the mesh, which extends"),
+        ({"tolerance": 1e308, "boundary": "surface", "size": 1}, "larger than the mesh"),
     ],
 )
 def test_wrong_tolerances_are_named(options: dict[str, Any], words: str) -> None:

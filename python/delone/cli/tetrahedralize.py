@@ -140,13 +140,13 @@ def fill(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Fill a closed surface with tetrahedra; its triangles are kept exactly.
+    """Fill a closed surface with tetrahedra; by default, its triangles are kept exactly.
 
     Holes, regions and face markers in .smesh and .poly files are used.
 
     With ``--boundary surface``, triangles in one plane are replaced, which adds fewer points, and
-    they are divided where sizes require it. Sizes, ``--radius-edge`` and ``--min-angle`` add points
-    inside.
+    they are divided where sizes and ``--radius-edge`` require it. Sizes, ``--radius-edge`` and
+    ``--min-angle`` add points inside.
 
     With ``--imprint``, bodies may overlap or be in contact: their triangles are cut where they
     meet, at rounded points.
@@ -315,11 +315,13 @@ def _refinement_rows(figures: dict[str, Any]) -> list[Row]:
     large, above = figures["too_large"]["count"], figures["above_ratio"]["count"]
     rows = [
         (
-            "points for sizes",
-            f"{figures['for_sizes']:,} inside, {figures['on_facets']:,} on faces, "
-            f"{figures['on_segments']:,} on edges",
+            "points on the surface",
+            f"{figures['on_facets']:,} on faces, {figures['on_segments']:,} on edges",
         ),
-        ("points for shapes", f"{figures['for_shapes']:,}"),
+        (
+            "points inside",
+            f"{figures['for_sizes']:,} for sizes, {figures['for_shapes']:,} for shapes",
+        ),
         (
             "larger than the size",
             f"{large:,}, up to {figures['largest_size_ratio']:.3g} times" if large else "none",

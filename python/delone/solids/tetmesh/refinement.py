@@ -238,6 +238,11 @@ def refined(mesh: Any, marked: ArrayLike | None, bounds: Bounds) -> Any:
         rows = chosen(marked, mesh.nsimplex, "tetrahedra")
         further = _size_function(mesh, rows, length_of(bounds.ratio * volumes[rows]) * start.unit)
     extent = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
+    if bounds.tolerance >= extent * start.unit:
+        raise InputError(
+            f"tolerance={bounds.tolerance:g} is larger than the mesh, which extends over "
+            f"{extent * start.unit:g}: give it in the unit of the points"
+        )
     regions, scale = np.unique(mesh.region), (extent, start.unit)
     lengths = Lengths(bounds.size, bounds.max_volume, regions, scale, further)
     lengths.require_within(corners, mesh.region, volumes, bounds.max_points)
@@ -360,7 +365,7 @@ def _finished(
     """Return the mesh of the last state, with its report."""
     (start, state), (total, improvement) = states, done
     if bounds.tolerance:
-        _require_apart(state, bounds.tolerance)
+        _require_apart(mesh, state, bounds.tolerance)
     simplices = np.ascontiguousarray(state.simplices)
     excess = _excess(state.points, simplices, lengths.at(*_placed(state)))
     shapes = _radius_edge(state.points[simplices])
@@ -399,12 +404,16 @@ def _finished(
     return type(mesh)._of(arrays, report, nadded, mesh._workers)
 
 
-def _require_apart(state: _State, tolerance: float) -> None:
+def _require_apart(mesh: Any, state: _State, tolerance: float) -> None:
     """Require that faces that moved within the tolerance do not cross others."""
     faces = np.ascontiguousarray(state.faces)
-    if _core.check_surface3(state.points, faces, 0, 0).pairs.ncrossing:
+    found = _core.check_surface3(state.points, faces, 1, 0).pairs
+    if found.ncrossing:
+        rows = state.rows[found.faces[0]]
+        own = rows < len(mesh.face_source)
+        named = f" {' and '.join(map(str, mesh.face_source[rows]))}" if own.all() else ""
         raise InputError(
-            f"faces would cross others if they were moved by tolerance={tolerance:g}: give a "
+            f"faces{named} would cross if they were moved by tolerance={tolerance:g}: give a "
             "tolerance that is smaller than the gaps between faces"
         )
 

@@ -257,8 +257,9 @@ class TetMesh(Triangulation):
             triangulated again, and edges between these are divided.
         tolerance : float, optional
             With ``boundary="surface"``, adjacent faces with one marker whose vertices are all
-            within this distance of one plane are one planar part, in the unit of the points. Faces
-            move by up to twice the distance. By default 0: a planar part is exactly in one plane.
+            within this distance of one plane, and that face the same direction, are one planar
+            part, in the unit of the points. Faces move by up to twice the distance. By default 0: a
+            planar part is exactly in one plane.
         max_points : int, optional
             Maximum number of added points; by default 2,000,000. Sizes that require far more raise
             an error before the refinement starts; otherwise it stops at the limit, and the report
@@ -296,7 +297,8 @@ class TetMesh(Triangulation):
         point makes their tetrahedra better.
 
         New edges are not shorter than the shortest edge of the tetrahedron that is refined, or half
-        of its size, so the refinement ends. With ``boundary="faces"``, tetrahedra at faces
+        of its size; at points on faces for shapes, not shorter than a share of the edges and
+        heights of the input. So the refinement ends. With ``boundary="faces"``, tetrahedra at faces
         that are larger than the size remain, and the report lists them.
 
         Points on faces are rounded to doubles; `RefinementReport.surface_distance` is an upper

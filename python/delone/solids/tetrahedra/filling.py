@@ -73,10 +73,10 @@ def tetrahedralize(
     progress: Callable[[str, float], object] | None = None,
     workers: int | None = None,
 ) -> TetMesh:
-    """Fill a closed surface with tetrahedra; its triangles are kept exactly.
+    """Fill a closed surface with tetrahedra; by default, its triangles are kept exactly.
 
-    No point of the input moves, and points are added only strictly between the faces, unless sizes
-    are given and ``boundary="surface"``.
+    No point of the input moves. Points are added strictly between the faces; with
+    ``boundary="surface"`` and sizes or bounds on shapes, also on them.
 
     Parameters
     ----------
@@ -121,15 +121,17 @@ def tetrahedralize(
     size, max_volume : float, mapping, callable or tuple, optional
         Target edge length, and largest volume of a tetrahedron, as for ``TetMesh.refine``: by
         number, by region, by position, or by another mesh. With ``boundary="surface"``, faces are
-        divided where sizes require it.
+        divided where sizes and bounds on shapes require it.
     radius_edge, min_angle : float, optional
         Bounds on shapes, as for ``TetMesh.refine``. If one of these four arguments is given, the
         mesh is refined, with 2.0 and 20 degrees by default; otherwise points are added only where
-        faces need them.
+        faces need them. With ``boundary="surface"`` and a ratio, thin parts get tetrahedra about as
+        large as they are thick; ``radius_edge=np.inf`` is no bound.
     max_points : int, optional
         Maximum number of points that may exist at any time besides those of the input; by default a
         million, or ten per face if that is more. For sizes and shapes, the maximum number of
-        points that are added for them; by default 2,000,000.
+        points that are added for them; by default 2,000,000. Sizes that need far more are an error
+        before the work; for shapes, the work ends at the limit, and the report says so.
     progress : callable, optional
         Called before each stage with its name and the fraction of stages done.
     workers : int, optional
@@ -159,7 +161,8 @@ def tetrahedralize(
         More than `max_points` points are needed for the faces or, by an estimate, for the sizes.
     InputError
         Nothing is inside by the rule `inside`, or the rule contradicts itself; seeds or extra
-        points are outside or on a face; or an argument is invalid.
+        points are outside or on a face; faces that `tolerance` moves would cross others; or an
+        argument is invalid.
     NonFiniteError, ShapeError, DtypeError, FileFormatError, MissingExtraError
         The input is not such arrays, or not such a file or object.
     KeyboardInterrupt
@@ -243,7 +246,7 @@ def tetrahedralize(
             max_volume=max_volume,
             min_angle=min_angle,
             boundary=boundary,
-            tolerance=tolerance if tolerance and boundary == "surface" else 0.0,
+            tolerance=0.0 if tolerance is None or boundary == "faces" else tolerance,
             max_points=max_points,
             progress=None,
         )

@@ -5,8 +5,8 @@ use std::collections::HashSet;
 use delone_predicates::{Sign, orient3d};
 
 use super::judge::{cross, dot, minus};
-use super::mesh::{Mesh, edge};
-use super::near::{self, AtEdge};
+use super::mesh::{Mesh, Side, edge};
+use super::near::{self, AtEdge, Pair};
 use crate::base::error::{Error, Result};
 use crate::base::memory::{push, with_room};
 use crate::base::sets::Sets;
@@ -32,28 +32,40 @@ pub fn collect(mesh: &mut Mesh, source: &[i32], markers: &[i32], tolerance: f64)
     at.sort_unstable();
     // Join walls across edges between two of them.
     let mut sets = Sets::of(mesh.facet.len())?;
-    let mut bent: Vec<(u32, u32, bool)> = Vec::new();
+    let mut pairs: Vec<Pair> = Vec::new();
     let mut rest = at.as_slice();
-    while let Some((&(ends, first, z, _), others)) = rest.split_first() {
+    while let Some((&(ends, first, z, side), others)) = rest.split_first() {
         let same = others.iter().take_while(|o| o.0 == ends).count();
         if same == 1 {
-            let (_, second, w, _) = others[0];
+            let (_, second, w, other) = others[0];
             let [a, b, c, d] = mesh.places_of([ends[0], ends[1], z, w]);
             let (i, j) = (first as usize, second as usize);
             // On two sides: the normals from the edge are opposite.
             let normals = [c, d].map(|x| cross(minus(b, a), minus(x, a)));
             let opposite = dot(normals[0], normals[1]) < 0.0;
             let alike = markers[i] == markers[j];
-            if source[i] == source[j] || (alike && opposite && orient3d(a, b, c, d) == Sign::Zero) {
+            let flat = || orient3d(a, b, c, d) == Sign::Zero;
+            let exact = source[i] == source[j] || (alike && opposite && flat());
+            if exact {
                 sets.join(first, second);
-            } else if alike && tolerance > 0.0 {
-                push(&mut bent, (first, second, opposite))?;
+            }
+            if tolerance > 0.0 && (exact || alike) {
+                let turned = is_along(mesh, side, ends) == is_along(mesh, other, ends);
+                push(
+                    &mut pairs,
+                    Pair {
+                        walls: [first, second],
+                        exact,
+                        opposite,
+                        turned,
+                    },
+                )?;
             }
         }
         rest = &others[same..];
     }
-    if !bent.is_empty() {
-        near::join(mesh, &at, &bent, &mut sets, tolerance)?;
+    if !pairs.is_empty() {
+        near::join(mesh, &at, &pairs, &mut sets, tolerance)?;
     }
     for (row, facet) in (0..).zip(&mut mesh.facet) {
         *facet = sets.root(row);
@@ -75,6 +87,12 @@ pub fn collect(mesh: &mut Mesh, source: &[i32], markers: &[i32], tolerance: f64)
     }
     (mesh.segments, mesh.pinched) = (segments, pinched);
     Ok(())
+}
+
+/// Whether a wall, as seen from a side, passes an edge from its first to its second vertex.
+fn is_along(mesh: &Mesh, side: Side, [a, b]: [u32; 2]) -> bool {
+    let [x, y, z] = mesh.face(side);
+    [[x, y], [y, z], [z, x]].contains(&[a, b])
 }
 
 /// Adds an edge to a set.
