@@ -5,7 +5,7 @@ Long and thin triangles of a part
 Files of machine parts have triangles that are as long as the part and as thin as one step around a hole. Tetrahedra at such
 triangles have small angles, whatever is added inside. With ``boundary="surface"``, the triangles are divided as well.
 
-Install: ``pip install "delone[pyvista]"``.
+Install: ``pip install "delone[plot,pyvista]"``.
 """
 
 import matplotlib.pyplot as plt

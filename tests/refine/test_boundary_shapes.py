@@ -126,7 +126,7 @@ def test_nearly_flat_sides_are_joined() -> None:
     exact, joined = (meshed(given, size=0.1, tolerance=t) for t in (None, 1e-6))
     # Of the edges of the lattice, those of the box are left.
     assert joined.report.on_segments < exact.report.on_segments / 3
-    assert joined.report.surface_distance == 2e-6
+    assert 2e-6 < joined.report.surface_distance < 2.001e-6
     assert bent(joined, given).max() < 2e-6
     assert joined.quality().smallest_dihedral.min() >= 20
     half = meshed(given, size=0.1, tolerance=1e-9)

@@ -72,7 +72,8 @@ def as_cells(given: Any, *, name: str, crs: str | None, to: str, workers: int) -
         count = len(wrong)
         raise CrossingSegmentsError(
             f"{name}: {counted(count, 'polygon')} {agreed(count, 'has', 'have')} sides that cross "
-            f"or are repeated; first: {first}: repair them, for example with shapely.make_valid"
+            f"or are repeated; first: {first}: repair them, for example with shapely.make_valid "
+            'and method="structure"'
         )
     nested = badly_nested(arrays, _core.PlaneCells, workers)
     if len(nested):

@@ -305,6 +305,9 @@ def _rows(figures: dict[str, Any]) -> list[Row]:
     ]
     if "refinement" in figures:
         rows += _refinement_rows(figures["refinement"])
+        distance = figures["refinement"]["surface_distance"]
+        if distance:
+            rows.append(("distance from the surface", f"at most {distance:.2g}"))
     if "improvement" in figures:
         return rows + improvement_rows(figures["improvement"])
     small, large = figures["smallest_dihedral"], figures["largest_dihedral"]

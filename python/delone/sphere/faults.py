@@ -22,7 +22,7 @@ FAULTS = {
     ),
     CROSSING: (
         "sides that cross or are repeated",
-        "repair them, for example with shapely.make_valid",
+        'repair them, for example with shapely.make_valid and method="structure"',
     ),
 }
 

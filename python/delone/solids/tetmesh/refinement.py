@@ -259,7 +259,7 @@ def refined(mesh: Any, marked: ArrayLike | None, bounds: Bounds) -> Any:
         state = _continued(state, made)
         if not bounds.min_angle:
             break
-        state, improvement = _improved(state, bounds.min_angle, left)
+        state, improvement = _improved(state, bounds, left)
         total["for_shapes"] += improvement.points_added
         left -= improvement.points_added
         excess = _excess(state.points, state.simplices, lengths.at(*_placed(state)))
@@ -337,13 +337,18 @@ def _continued(state: _State, made: RefinedTetrahedra) -> _State:
     )
 
 
-def _improved(state: _State, goal: float, left: int) -> tuple[_State, ImproveReport]:
+def _improved(state: _State, bounds: Bounds, left: int) -> tuple[_State, ImproveReport]:
     """Return a mesh with better tetrahedra and at most `left` more points, and the report."""
     neighbors = _core.facet_neighbors(state.simplices, len(state.points))
     kept = Kept.of(state.simplices, neighbors, state.faces, state.labels)
     free = improving.Points.free(len(state.points))
+    tell = bounds.progress
     made, report, _ = improving.improved(
-        (state.points, state.simplices, kept.labels), free, goal, limits=(_PASSES, left)
+        (state.points, state.simplices, kept.labels),
+        free,
+        bounds.min_angle,
+        limits=(_PASSES, left),
+        progress=None if tell is None else lambda *_: tell(bounds.max_points - left),
     )
     return (
         state._replace(points=made.points, simplices=made.simplices, labels=kept.own[made.labels]),
@@ -384,7 +389,7 @@ def _finished(
         radius_edge=bounds.radius_edge,
         largest_radius_edge=float(shapes.max(initial=0.0)),
         largest_size_ratio=float(excess.max(initial=0.0)),
-        surface_distance=max(_distance(start, state) * start.unit, 2 * bounds.tolerance),
+        surface_distance=_distance(start, state, bounds.tolerance / start.unit) * start.unit,
         too_large=np.flatnonzero(excess > 1 + _ROUNDING),
         above_ratio=np.flatnonzero(shapes > bounds.radius_edge * (1 + _ROUNDING)),
         improvement=improvement,
@@ -478,8 +483,13 @@ def _radius_edge(corners: Floats) -> Floats:
     return found
 
 
-def _distance(start: _State, state: _State) -> float:
-    """Return a bound on the distance of added points on faces from the planes of input faces."""
+def _distance(start: _State, state: _State, tolerance: float) -> float:
+    """Return a bound on the distance of faces from the input faces."""
+    # The measure is off by a few rounding errors of coordinates.
+    rounding = float(16 * np.finfo(np.float64).eps * np.abs(start.points).max())
+    if tolerance:
+        # The old and the new faces of a planar part are between two planes.
+        return 2 * tolerance + rounding
     new = state.faces >= len(start.points)
     at = np.flatnonzero(new.any(axis=1))
     if not len(at):
@@ -488,6 +498,4 @@ def _distance(start: _State, state: _State) -> float:
     normal = np.cross(b - a, c - a)
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     off = np.abs(((state.points[state.faces[at]] - a[:, None]) * normal[:, None]).sum(axis=2))
-    # The measure is off by a few rounding errors of coordinates.
-    rounding = 16 * np.finfo(np.float64).eps * np.abs(start.points).max()
     return float(off[new[at]].max() + rounding)

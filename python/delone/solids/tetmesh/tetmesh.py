@@ -265,7 +265,8 @@ class TetMesh(Triangulation):
             an error before the refinement starts; otherwise it stops at the limit, and the report
             says so.
         progress : callable, optional
-            Called from time to time with the number of points added in this round.
+            Called from time to time with the number of points added in this round, and after each
+            pass that removes slivers with the number added so far.
 
         Returns
         -------

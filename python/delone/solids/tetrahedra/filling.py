@@ -126,14 +126,15 @@ def tetrahedralize(
         Bounds on shapes, as for ``TetMesh.refine``. If one of these four arguments is given, the
         mesh is refined, with 2.0 and 20 degrees by default; otherwise points are added only where
         faces need them. With ``boundary="surface"`` and a ratio, thin parts get tetrahedra about as
-        large as they are thick; ``radius_edge=np.inf`` is no bound.
+        large as they are thick; ``radius_edge=np.inf`` leaves shapes alone.
     max_points : int, optional
         Maximum number of points that may exist at any time besides those of the input; by default a
         million, or ten per face if that is more. For sizes and shapes, the maximum number of
         points that are added for them; by default 2,000,000. Sizes that need far more are an error
         before the work; for shapes, the work ends at the limit, and the report says so.
     progress : callable, optional
-        Called before each stage with its name and the fraction of stages done.
+        Called before each stage with its name and the fraction of stages done, and again from time
+        to time while points are added for sizes and shapes.
     workers : int, optional
         Number of threads; by default one per core. The result does not depend on it.
 
@@ -324,7 +325,8 @@ class _Stages(NamedTuple):
         made = self._mesh(found, solid, kept, cut, check)
         if self.bounds is not None:
             self._tell("refine", 0.8)
-            made = refined(made, None, self.bounds)
+            tell = None if self.progress is None else lambda _: self._tell("refine", 0.8)
+            made = refined(made, None, self.bounds._replace(progress=tell))
         self._tell("done", 1.0)
         return made
 

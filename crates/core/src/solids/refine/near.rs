@@ -212,7 +212,7 @@ impl<'a> Search<'a> {
     }
 
     /// Gives directions to all walls of an exact facet, from one of them on; false, without a
-    /// change, if a wall would face another direction than the plane.
+    /// change, if a wall would face away from the plane.
     fn spread(
         &mut self,
         wall: u32,
