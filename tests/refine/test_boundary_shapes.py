@@ -324,3 +324,72 @@ def test_thin_faces_are_named_as_the_cause() -> None:
                 for p, q, r in ((a, b, c), (b, c, a), (c, a, b)):
                     u, v = q - p, r - p
                     assert np.arctan2(np.linalg.norm(np.cross(u, v)), u @ v) > np.radians(19.99)
+
+
+def plane_angles(mesh: delone.TetMesh) -> Floats:
+    """The smallest angle of each face, in degrees."""
+    corners = mesh.points[mesh.input_faces]
+    found = []
+    for k in range(3):
+        u, v = corners[:, k - 2] - corners[:, k], corners[:, k - 1] - corners[:, k]
+        across = np.linalg.norm(np.cross(u, v), axis=1)
+        found.append(np.degrees(np.arctan2(across, (u * v).sum(axis=1))))
+    angles: Floats = np.min(found, axis=0)
+    return angles
+
+
+def test_caps_are_part_of_a_nearly_flat_side() -> None:
+    """At the upper front edge of a cube, a triangle is lower than the tolerance."""
+    corners = [
+        (0, 0, 1),
+        (1, 0, 1),
+        (1, 1, 1),
+        (0, 1, 1),
+        (0, 0, 0),
+        (1, 0, 0),
+        (1, 1, 0),
+        (0, 1, 0),
+    ]
+    points = np.array([*corners, (0.5, 1e-4, 1 - 1e-4)])
+    faces = [(0, 8, 3), (8, 2, 3), (8, 1, 2), (0, 1, 8), (4, 5, 1), (4, 1, 0), (5, 6, 2), (5, 2, 1)]
+    faces += [(6, 7, 3), (6, 3, 2), (7, 4, 0), (7, 0, 3), (4, 7, 6), (4, 6, 5)]
+    joined = meshed((points, faces), size=0.3, tolerance=1e-3)
+    assert plane_angles(joined).min() > 5
+    assert plane_angles(meshed((points, faces), size=0.3)).min() < 0.1
+
+
+def test_walls_far_from_a_bad_tetrahedron_are_not_divided() -> None:
+    # A pipe: the centers of many tetrahedra lie beyond its opposite side.
+    n = 24
+    angle = 2 * np.pi * np.arange(n) / n
+    ring = np.column_stack((np.cos(angle), np.sin(angle), np.zeros(n)))
+    up, thin = np.array([0, 0, 3.0]), np.array([0.6, 0.6, 1])
+    points = np.concatenate((ring, ring + up, thin * ring + up, thin * ring))
+    k, after = np.arange(n), (np.arange(n) + 1) % n
+    faces = [
+        np.column_stack(rows)
+        for low, high in ((0, n), (n, 2 * n), (2 * n, 3 * n), (3 * n, 0))
+        for rows in ((low + k, low + after, high + after), (low + k, high + after, high + k))
+    ]
+    mesh = meshed((points, np.concatenate(faces)), min_angle=0)
+    assert mesh.nsimplex < 1700
+
+
+def test_points_at_equal_distances_from_a_sharp_corner_request_none() -> None:
+    corner = np.radians(15)
+    base = np.array([(0, 0), (4, 0), (4 * np.cos(corner), 4 * np.sin(corner))])
+    hull = delone.ConvexHull(
+        np.vstack([np.column_stack((base, np.full(3, z))) for z in (0.0, 1.0)])
+    )
+    mesh = meshed((hull.points, hull.simplices), min_angle=0)
+    assert 0 < mesh.report.on_segments <= 5
+
+
+def test_ratios_below_two_request_no_points_on_the_surface() -> None:
+    counts = []
+    for ratio in (1.3, 2.0):
+        mesh = delone.tetrahedralize(
+            *prism(12, 2.0), boundary="surface", radius_edge=ratio, min_angle=0
+        )
+        counts.append(mesh.report.on_segments)
+    assert 0 < counts[0] < 1.5 * counts[1]
