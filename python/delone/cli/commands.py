@@ -144,7 +144,7 @@ COMMANDS = {
     "tetrahedralize": Listed(
         "tetrahedralize",
         "fill",
-        "Fill a closed surface with tetrahedra; its triangles are kept exactly.",
+        "Fill a closed surface with tetrahedra; by default, its triangles are kept exactly.",
         on_rows=False,
     ),
     "cluster": Listed(
