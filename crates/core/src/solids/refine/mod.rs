@@ -10,8 +10,8 @@
 //! # Terms
 //!
 //! A *wall* is a face that must stay: of the boundary, between labels, or inside. Walls in one
-//! plane, exactly or within a tolerance, form a *facet*; a *segment* is an edge where facets end. The *cavity* of a point is the
-//! set of tetrahedra that its insertion replaces.
+//! plane, exactly or within a tolerance, form a *facet*; a *segment* is an edge where facets end.
+//! The *cavity* of a point is the set of tetrahedra that its insertion replaces.
 //!
 //! # Invariants
 //!
