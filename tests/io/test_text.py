@@ -313,6 +313,7 @@ def test_point_numbers_without_names_are_asked_for(tmp_path, mark):
         ('x,y\n"1,234.5",2\n3,4\n', "'1,234.5', not a number: remove the separators"),
         ("x;y\n1,234.5;2\n1,235;4\n", "'1,234.5', not a number: remove the separators"),
         ("x;y\n1 234,5;2\n1 235;4\n", "'1 234,5', not a number: remove the separators"),
+        ('x,y\n"1,5","2,25"\n"3,5","4,25"\n', "'1,5', not a number: write decimals with a point"),
         ("x y\n0.5D+03 2\n1 2\n", "'0.5D[+]03', not a number: .* with E, 0.5E[+]03"),
         ("1 2\n3 -.25d2\n", "'-.25d2', not a number: .* with E, -.25E2"),
     ],

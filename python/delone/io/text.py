@@ -38,6 +38,7 @@ __all__ = ["line_numbers", "read_points"]
 _THOUSANDS = re.compile(
     r"[+-]?\d{1,3}(?:(?:,\d{3})+(?:\.\d*)?|(?:['\u2019 \xa0]\d{3})+(?:[.,]\d*)?)"
 )
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d*")
 _FORTRAN = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)[dD][+-]?\d+")
 _DECIMALS = re.compile(r"[+-]?\d+[.,]\d+")
 _COMMENTS = ("#", "//", "%", "!")
@@ -226,6 +227,13 @@ def _spelling(text: str) -> str:
     return ""
 
 
+def _advice(text: str) -> str:
+    """Return how to change a field that is not read as a number; empty if that is not known."""
+    if _DECIMAL_COMMA.fullmatch(text):
+        return ": write decimals with a point, and no separators of thousands"
+    return _spelling(text)
+
+
 def _refuse_point_numbers(rows: list[list[str]], source: str) -> None:
     """Reject unnamed columns of which the first is probably a point number.
 
@@ -330,7 +338,7 @@ def _located(message: str, layout: _Layout, before: int, path: Path) -> str:
     if bad:
         text, row, column = literal_eval(bad[1]), int(bad[2]) + before, int(bad[3]) - 1
         name = layout.names[column] if layout.named and column < len(layout.names) else str(column)
-        what = "is empty" if not text else f"is {text!r:.60}, not a number{_spelling(text)}"
+        what = "is empty" if not text else f"is {text!r:.60}, not a number{_advice(text)}"
         return f"{_place(row, layout, path)}, column {name} {what}"
     short = re.search(r"at row (\d+) with (\d+) columns", message)
     if short:

@@ -246,7 +246,9 @@ class TetMesh(Triangulation):
             Target edge length: no tetrahedron is larger than the regular one with that edge, and no
             edge is longer than twice the size. A number; a mapping from regions to numbers; a
             function that takes positions (k, 3) and returns k lengths; or ``(mesh, values)``, a 3-D
-            triangulation with a length for each of its points, linear in between.
+            triangulation with a length for each of its points, linear in between. Lengths by
+            position are evaluated at the center of each tetrahedron and, if that extends over more
+            than 1/16 of the mesh, at ten positions inside: smaller spots may be missed.
         min_angle : float, optional
             The goal for the smallest dihedral angle in degrees, by default 20: at the end, slivers
             are removed as by `delone.improve`, with added points where no other change helps. 0 for
