@@ -409,3 +409,19 @@ def test_the_number_of_workers_changes_nothing() -> None:
         assert np.array_equal(one.rings[0], three.rings[0])
         assert repr(one.report) == repr(three.report)
         assert (one.workers, three.workers) == (1, 3)
+
+
+def test_nan_in_polygons_names_the_polygons() -> None:
+    shapely = pytest.importorskip("shapely")
+    square, bad = [(0, 0), (4, 0), (4, 4)], [(10, 0), (14, np.nan), (14, 4)]
+    with np.errstate(invalid="ignore"):
+        hollow = shapely.Polygon(square, [[(1, 1), (2, 1), (2, np.inf)]])
+        nested = shapely.GeometryCollection([shapely.Polygon(square), shapely.Polygon(bad)])
+    for given, rows in (
+        ([square, bad], [1]),
+        ([square, None, square, nested, hollow], [3, 4]),
+        ([shapely.Polygon(), hollow], [1]),
+    ):
+        with pytest.raises(delone.NonFiniteError) as caught:
+            Grid.from_polygons(given)
+        assert (caught.value.rows.tolist(), caught.value.count) == (rows, len(rows))

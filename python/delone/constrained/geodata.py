@@ -39,6 +39,7 @@ __all__ = [
     "no_geometry",
     "parts_of",
     "polygon_of",
+    "require_finite_geometries",
     "require_finite_parts",
     "rings_of_numbers",
     "steps_of",
@@ -90,11 +91,15 @@ def parts_of(geometries: Any, *, name: str = "geometries") -> Parts:
 
 def require_finite_parts(parts: Parts) -> None:
     """Reject NaN and infinity, and name the geometries that have them."""
-    finite = np.isfinite(parts.coordinates)
+    part = np.repeat(np.arange(len(parts.geometries)), np.diff(parts.starts))
+    require_finite_geometries(parts.coordinates, parts.geometries[part])
+
+
+def require_finite_geometries(coordinates: Floats, geometries: NDArray[Any]) -> None:
+    """The same for rows of coordinates, and the geometry of each row."""
+    finite = np.isfinite(coordinates)
     if not finite.all():
-        wrong = ~finite.all(axis=1)
-        part = np.searchsorted(parts.starts, np.flatnonzero(wrong), side="right") - 1
-        bad = np.unique(parts.geometries[part])
+        bad = np.unique(geometries[~finite.all(axis=1)])
         first = ", ".join(map(str, bad[:10].tolist()))
         raise NonFiniteError(
             f"{len(bad)} {agreed(len(bad), 'geometry has', 'geometries have')} NaN or infinity; "

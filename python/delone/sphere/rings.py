@@ -17,7 +17,7 @@ from delone._base.arrays import (
 )
 from delone._base.extras import require
 from delone._base.georeference import crs_of, is_geographic
-from delone.constrained.geodata import no_geometry
+from delone.constrained.geodata import no_geometry, require_finite_geometries
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.sphere.coordinates import BEYOND, directions_of, units_of
 from delone.sphere.flat import flat_polygon
@@ -283,7 +283,9 @@ def _shapes(table: Any) -> NDArray[Any]:
     items = np.empty(len(rows), dtype=object)
     for row, item in enumerate(rows):
         if isinstance(item, list | tuple | np.ndarray):
-            items[row] = shapely.Polygon(_ring(item, row))
+            # Shapely warns of NaN, which is refused when all geometries are known.
+            with np.errstate(invalid="ignore"):
+                items[row] = shapely.Polygon(_ring(item, row))
         elif item is None or isinstance(item, shapely.Geometry):
             items[row] = item
         else:
@@ -328,6 +330,7 @@ def geometries(given: Any, *, degrees: bool, workers: int | None) -> Rings:
     places, of_ring = places[kept.astype(bool)], of_ring[kept.astype(bool)]
     if not len(places):
         raise InputError("there are no polygons")
+    require_finite_geometries(places, of_item[of_part[of_ring]])
     vectors = directions_of(places, None, degrees=degrees, workers=workers, any_turns=True)
     count = np.bincount(of_ring, minlength=len(rings))
     per_item = np.bincount(of_item[of_part], minlength=len(items))
