@@ -278,3 +278,38 @@ def test_a_small_cell_at_a_concave_one_that_is_much_larger() -> None:
     expected = s * s * (1 - x / y) / 2
     for found in (delone.Overlaps([small], [large]), delone.Overlaps([large], [small])):
         assert found.areas.tolist() == pytest.approx([expected], rel=1e-13)
+
+
+@pytest.mark.parametrize("power", [0, 9, 10, 11, 20, 50, 100, 230])
+@pytest.mark.parametrize("at", ["corner", "lattice", "side"])
+def test_cells_of_very_different_size(at: str, power: int) -> None:
+    """Errors do not grow with the length of sides, wherever those start."""
+    rng = np.random.default_rng(power)
+    for _ in range(12):
+        small, large = _around(rng), _around(rng)
+        place = (large[0] + large[1]) / 2 if at == "side" else large[1]
+        large = (large - place) * 2.0**power + rng.uniform(-0.5, 0.5, 2)
+        if at == "lattice":
+            small, large[1] = np.rint(small * 2) / 2, np.rint(large[1] * 2) / 2
+        if not (simple(small) and simple(large)):
+            continue
+        exact = float(shared_area([small], [large]))
+        for found in (Overlaps([small], [large]), Overlaps([large], [small])):
+            assert abs(found.areas.sum() - exact) <= 4e-16 * exact + 1e-23
+
+
+def _around(rng: np.random.Generator) -> Floats:
+    """A concave ring of extent 1 around the origin."""
+    angles = np.sort(rng.uniform(0, 2 * np.pi, int(rng.integers(3, 8))))
+    radii = rng.uniform(0.2, 2, len(angles))
+    return np.column_stack((np.cos(angles), np.sin(angles))) * radii[:, None]
+
+
+def test_a_corner_of_a_large_cell_in_a_small_one() -> None:
+    """A long side that starts in the small cell counts from its start."""
+    square = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    for far in (1e3, 1e6, 1e9):
+        large = np.array([(0.6, 0.7), (-far, -0.8 * far), (-0.2 * far, -0.2 * far), (far, -far)])
+        exact = float(shared_area([large], [square]))
+        for found in (Overlaps([large], [square]), Overlaps([square], [large])):
+            assert found.areas.tolist() == pytest.approx([exact], rel=1e-15)

@@ -82,9 +82,9 @@ class Overlaps(SharedAreas[AreaWeights], Stored):
     Exact orientation tests decide which cells share area. An infinitesimal move of the target
     breaks ties, so common corners and sides need no special treatment. An area is a sum over
     corners and crossings (Franklin, 1990) in double-double arithmetic relative to the smaller cell:
-    it is accurate to its last bits, even for small cells far from the origin. No polygon is
-    clipped. Parts below 1e-24 of the squared extent of the smaller cell cannot be distinguished
-    from cells that only touch, and are not pairs.
+    it is accurate to its last bits, even for small cells far from the origin, and whatever the size
+    of the other cell. No polygon is clipped. Parts below 1e-24 of the squared extent of the smaller
+    cell cannot be distinguished from cells that only touch, and are not pairs.
 
     A ring may touch itself: at corners, in sides, and along sides that it passes in opposite
     directions. Exact signs decide whether it crosses itself there.

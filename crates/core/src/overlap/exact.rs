@@ -1,7 +1,7 @@
 //! Integers times powers of two: signs where filters fail.
 
 use delone_predicates::Point3;
-use delone_predicates::arithmetic::decode_odd;
+use delone_predicates::arithmetic::{Pair, decode_odd};
 use num_bigint::{BigInt, Sign};
 
 /// An integer times a power of two.
@@ -65,6 +65,33 @@ impl Big {
     /// The difference.
     pub fn minus(&self, other: &Self) -> Self {
         self.plus(&other.negated())
+    }
+
+    /// The number as a pair of 1 <= |x| < 2, to 2^-105 of itself, and the exponent of a power of two; or
+    /// zero.
+    pub fn leveled(&self) -> (Pair, i64) {
+        const KEPT: u64 = 106;
+        let (bits, magnitude) = (self.digits.bits(), self.digits.magnitude());
+        let kept = match bits.checked_sub(KEPT) {
+            Some(beyond) => magnitude >> beyond,
+            None => magnitude << (KEPT - bits),
+        };
+        if bits == 0 {
+            return (Pair::from_double(0.0), 0);
+        }
+        let kept: u128 = kept
+            .iter_u64_digits()
+            .rev()
+            .fold(0, |all, part| all << 64 | u128::from(part));
+        // The head takes 53 bits, and what is left fits into the tail.
+        let (head, tail) = (kept >> 53, kept & ((1 << 53) - 1));
+        let unit = f64::from(self.sign()) / (1_u64 << 52) as f64;
+        let (hi, lo) = (
+            head as f64 * unit,
+            tail as f64 * unit * (f64::EPSILON / 2.0),
+        );
+        let exponent = self.exponent + bits as i64 - 1;
+        (Pair::from_double(hi) + Pair::from_double(lo), exponent)
     }
 }
 

@@ -45,6 +45,18 @@ fn times(a: Pair, power: f64) -> Pair {
     }
 }
 
+/// A pair times two to the power of an exponent, which may be out of range.
+pub fn scaled(mut a: Pair, exponent: i64) -> Pair {
+    const STEP: i64 = 1000;
+    let mut left = exponent.clamp(-4 * STEP, 4 * STEP);
+    while left != 0 {
+        let step = left.clamp(-STEP, STEP);
+        a = times(a, f64::from_bits(((1023 + step) as u64) << 52));
+        left -= step;
+    }
+    a
+}
+
 /// The quotient, by three steps of long division: to 2^-100 of itself.
 #[inline]
 pub fn quotient(a: Pair, b: Pair) -> Pair {

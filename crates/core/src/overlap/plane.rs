@@ -7,11 +7,16 @@
 //!
 //! # Errors
 //!
-//! Terms are computed as pairs of doubles relative to a corner of the smaller cell, of extent s. The
-//! end of a term is in both cells, and its start in a side, near that corner if the side is long: at
-//! most some s away. A crossing is off by 2^-103 L, where L is the length of a side, which changes an
-//! area by as much times s. From the start of a side, it would be as much times L. On lines that are nearly parallel, a crossing errs along both, which changes the
-//! two terms alike; parallel lines do not cross, as one of them has moved.
+//! Let s be the extent of the smaller cell. Terms are computed as pairs of doubles relative to a corner
+//! of that cell, and all places of which there are terms are within some s of it: ends of sides in both
+//! cells, and crossings. Of two sides that cross, one is a side of the smaller cell, so the shorter one
+//! is no longer than s; the crossing is a share of it. The share is s / (s - t), with the tests of the
+//! ends at the other side; they have opposite signs, so the share is as right as they are. A side
+//! longer than [`LONG`] s is tested with integers, and its terms are the products of its distance from
+//! the corner and of positions along it, which need no other place of it. So all errors are some
+//! 2^-100 of s^2, whatever the length of sides. On lines that are nearly parallel, a crossing errs
+//! along both, which changes the two terms alike; parallel lines do not cross, as one of them has
+//! moved.
 
 use std::cmp::Ordering;
 use std::sync::OnceLock;
@@ -25,10 +30,11 @@ use crate::base::watch::Pace;
 use crate::locate::boxes::Boxes;
 
 use super::convex::Pieces;
+use super::exact::Big;
 use super::outline::{
     Fault, Lie, Met, Outline, Prepared, Sum, Work, distinct, meet, start_at_smallest,
 };
-use super::pairs::{ZERO, pair, quotient};
+use super::pairs::{ONE, ZERO, quotient, scaled};
 use super::sides::{MANY, meeting};
 use super::signs::Moved;
 
@@ -38,7 +44,8 @@ const LEAST: f64 = 1e-28;
 /// cells that only touch.
 const TINY: f64 = 1e-24;
 
-/// Sides that are longer than this many times the smaller cell are measured from near it.
+/// Sides that are longer than this many times the smaller cell need integers: with pairs, a place on
+/// one errs by 2^-103 of its length.
 const LONG: f64 = 1024.0;
 
 /// A corner and the side that starts there.
@@ -334,6 +341,15 @@ impl Outline<2> for Region {
     }
 }
 
+/// What terms of a side are computed from.
+enum Along {
+    /// Its start: a term is the triangle of the origin, the start and a place.
+    Start([Pair; 2]),
+    /// Of a long one, the triangle of the origin and the side, over the square of its length, and its
+    /// direction: a term is the product of these and a place. It is not 0 at the start.
+    Line(Pair, [Pair; 2]),
+}
+
 /// The sum of terms, relative to a corner of the smaller cell.
 struct Doubled<'a> {
     p: &'a Region,
@@ -342,37 +358,68 @@ struct Doubled<'a> {
     /// The extent of the smaller cell.
     size: f64,
     sum: Pair,
-    /// The side of the first cell, and where it is measured from.
+    /// The side of the first cell, and what its terms are computed from.
     e: u32,
-    from: [Pair; 2],
+    along: Along,
+}
+
+/// The larger coordinate of a side, rounded.
+fn length([a, b]: [Point2; 2]) -> f64 {
+    (b[0] - a[0]).abs().max((b[1] - a[1]).abs())
+}
+
+/// The largest power of two that is not above a number.
+fn exponent(x: f64) -> i64 {
+    ((x.to_bits() >> 52) & 0x7ff) as i64 - 1023
+}
+
+/// Twice the area of the triangle of three places, exactly.
+fn triangle(a: Point2, b: Point2, c: Point2) -> Big {
+    let [u, v] = [b, c].map(|p| [0, 1].map(|k| Big::of(p[k]).minus(&Big::of(a[k]))));
+    u[0].times(&v[1]).minus(&u[1].times(&v[0]))
 }
 
 impl Doubled<'_> {
-    /// Where terms of a side start: at its start, or near the origin if it is long.
-    ///
-    /// It is the same place for all terms of a side, so it need not be the nearest one.
-    fn base(&self, [a, b]: [Point2; 2]) -> [Pair; 2] {
-        let start = from(self.origin, a);
-        let [x, y] = [0, 1].map(|k| b[k] - a[k]);
-        let length = x.abs().max(y.abs());
-        if length <= LONG * self.size || length == f64::INFINITY {
-            return start;
-        }
-        let [x, y] = [x / length, y / length];
-        let ahead = [0, 1].map(|k| -start[k].hi / length);
-        let share = (ahead[0] * x + ahead[1] * y) / (x * x + y * y);
-        let along = from(a, b);
-        let share = pair(share.clamp(0.0, 1.0));
-        [0, 1].map(|k| start[k] + along[k] * share)
+    fn long(&self, ends: [Point2; 2]) -> bool {
+        length(ends) > LONG * self.size
     }
 
-    fn add(&mut self, base: &[Pair; 2], x: &[Pair; 2], minus: bool) {
-        let term = cross(base, x);
+    fn along(&self, ends: [Point2; 2]) -> Along {
+        let [a, b] = ends;
+        if !self.long(ends) {
+            return Along::Start(from(self.origin, a));
+        }
+        // By a power of two, so that squares are in range.
+        let exponent = exponent(length(ends));
+        let direction = from(a, b).map(|x| scaled(x, -exponent));
+        let square = direction[0] * direction[0] + direction[1] * direction[1];
+        let (apart, own) = triangle(self.origin, a, b).leveled();
+        let apart = scaled(apart, own - exponent);
+        Along::Line(quotient(apart, square), direction)
+    }
+
+    fn term(&self, along: &Along, x: &[Pair; 2]) -> Pair {
+        match along {
+            Along::Start(start) => cross(start, x),
+            Along::Line(apart, d) => *apart * (d[0] * x[0] + d[1] * x[1]),
+        }
+    }
+
+    fn add(&mut self, term: Pair, minus: bool) {
         self.sum = if minus {
             self.sum - term
         } else {
             self.sum + term
         };
+    }
+
+    /// Adds the end of one side, which is the start of the next one.
+    fn turn(&mut self, along: &Along, ends: [Point2; 2], next: [Point2; 2]) {
+        let end = from(self.origin, ends[1]);
+        self.add(self.term(along, &end), false);
+        if self.long(next) {
+            self.add(self.term(&self.along(next), &end), true);
+        }
     }
 }
 
@@ -385,23 +432,18 @@ impl Pieces for Doubled<'_> {
     }
 
     fn place(&self, e: u32, f: u32, _: bool) -> [Pair; 2] {
-        let ([a, b], [c, d]) = (self.p.ends(e), self.q.ends(f));
-        let across = from(c, d);
-        let [s, t] = [a, b].map(|v| cross(&across, &from(c, v)));
-        let whole = s - t;
-        // On one line, any place of it serves.
-        let share = if whole.hi == 0.0 {
-            ZERO
+        let (mut short, mut other) = (self.p.ends(e), self.q.ends(f));
+        if length(other) < length(short) {
+            (short, other) = (other, short);
+        }
+        let ([a, b], [c, d]) = (short, other);
+        let share = if self.long(other) {
+            let [s, t] = [a, b].map(|v| triangle(c, d, v));
+            share_of(s.leveled(), s.minus(&t).leveled())
         } else {
-            quotient(s, whole)
-        };
-        // To both parts: a share that rounds to 1 may be less.
-        let share = if share.hi < 0.0 {
-            ZERO
-        } else if share.hi > 1.0 || (share.hi == 1.0 && share.lo > 0.0) {
-            pair(1.0)
-        } else {
-            share
+            let across = from(c, d);
+            let [s, t] = [a, b].map(|v| cross(&across, &from(c, v)));
+            share_of((s, 0), (s - t, 0))
         };
         let along = from(a, b);
         let start = from(self.origin, a);
@@ -409,33 +451,48 @@ impl Pieces for Doubled<'_> {
     }
 
     fn piece(&mut self, from: &[Pair; 2], to: &[Pair; 2]) {
-        self.add(from, to, false);
+        self.add(cross(from, to), false);
+    }
+}
+
+/// The quotient of two numbers times powers of two, to both parts from 0 to 1: one that rounds to 1
+/// may be less. On one line, where the divisor is 0, any place serves.
+fn share_of(part: (Pair, i64), whole: (Pair, i64)) -> Pair {
+    if whole.0.hi == 0.0 {
+        return ZERO;
+    }
+    let share = scaled(quotient(part.0, whole.0), part.1 - whole.1);
+    if share.hi < 0.0 {
+        ZERO
+    } else if share.hi > 1.0 || (share.hi == 1.0 && share.lo > 0.0) {
+        ONE
+    } else {
+        share
     }
 }
 
 impl Sum for Doubled<'_> {
     fn side(&mut self, e: u32) {
-        (self.e, self.from) = (e, self.base(self.p.ends(e)));
+        (self.e, self.along) = (e, self.along(self.p.ends(e)));
     }
 
     fn first(&mut self) {
-        let end = from(self.origin, self.p.ends(self.e)[1]);
-        let base = self.from;
-        self.add(&base, &end, false);
+        let next = self.p.next(self.e);
+        let along = std::mem::replace(&mut self.along, Along::Start([ZERO; 2]));
+        self.turn(&along, self.p.ends(self.e), self.p.ends(next));
+        self.along = along;
     }
 
     fn crossing(&mut self, f: u32, leaves: bool) {
         let x = self.place(self.e, f, leaves);
-        let base = self.from;
-        self.add(&base, &x, !leaves);
-        let base = self.base(self.q.ends(f));
-        self.add(&base, &x, leaves);
+        self.add(self.term(&self.along, &x), !leaves);
+        let along = self.along(self.q.ends(f));
+        self.add(self.term(&along, &x), leaves);
     }
 
     fn second(&mut self, f: u32) {
         let ends = self.q.ends(f);
-        let (base, end) = (self.base(ends), from(self.origin, ends[1]));
-        self.add(&base, &end, false);
+        self.turn(&self.along(ends), ends, self.q.ends(self.q.next(f)));
     }
 }
 
@@ -454,7 +511,7 @@ pub fn shared(p: &Region, q: &Region, work: &mut Work, pace: &mut Pace) -> Resul
         size,
         sum: ZERO,
         e: 0,
-        from: [ZERO; 2],
+        along: Along::Start([ZERO; 2]),
     };
     Ok(match meet(p, q, work, pace, &mut sum)? {
         Met::Nothing => 0.0,
