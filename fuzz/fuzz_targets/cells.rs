@@ -7,6 +7,7 @@ use delone_core::Point3;
 use delone_core::base::watch::Watch;
 use delone_core::overlap::{Checked, Grid, Polygons, Rows, check, overlaps};
 use delone_fuzz::Coordinates;
+use delone_fuzz::oracle::points::power_of_two;
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 
 const MOST: usize = 9;
@@ -23,7 +24,7 @@ const SLIVER: f64 = 1e-24;
 
 /// A ring, in ways that are hard.
 fn read(bytes: &mut Unstructured) -> Result<Vec<Point3>> {
-    let shape = bytes.int_in_range(0..=4)?;
+    let shape = bytes.int_in_range(0..=5)?;
     let count = bytes.int_in_range(3..=MOST)?;
     let side = bytes.int_in_range(1..=4_i32)?;
     let mut coordinates = Coordinates::new(bytes)?;
@@ -36,7 +37,15 @@ fn read(bytes: &mut Unstructured) -> Result<Vec<Point3>> {
             1 => [x, y, z],
             2 => [x, y, f64::from(side)],
             3 => [f64::from(side), x * 1e-8, y * 1e-8],
-            _ => [x, y, z * 1e-15],
+            4 => [x, y, z * 1e-15],
+            // Directions that are close to each other, and to axes and planes of coordinates.
+            _ => {
+                let mut small = |x: f64| {
+                    let power = *bytes.choose(&[0, 0, 0, -26, -60, -180, -530, -1000])?;
+                    Ok(x * power_of_two(power))
+                };
+                [small(x)?, small(y)?, small(z)?]
+            }
         });
     }
     // Repeated corners.
@@ -86,8 +95,8 @@ fn compare(p: &[Point3], q: &[Point3]) {
     let (Some(a), Some(b)) = (first.checked(), second.checked()) else {
         return;
     };
-    // A ring that touches itself with both orientations is not a cell; those that cross are found.
-    if a.faults[0] != 0 || b.faults[0] != 0 || a.concave[0] || b.concave[0] {
+    // Rings that cross or run along themselves are found.
+    if a.faults[0] != 0 || b.faults[0] != 0 {
         return;
     }
     let (whole, other) = (a.areas[0], b.areas[0]);

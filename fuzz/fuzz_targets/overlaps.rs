@@ -1,21 +1,38 @@
-//! Areas that pairs of cells in the plane share, with rings of lattices, against rational numbers:
-//! which rings are accepted, their areas, and what they share in either order.
+//! Areas that pairs of cells in the plane share, against rational numbers: which rings are accepted,
+//! their areas, and what they share in either order, for rings of lattices and for any doubles.
 
 #![no_main]
 
 use delone_core::Point2;
 use delone_core::base::watch::Watch;
 use delone_core::overlap::{Checked, Fault, Polygons, check_plane, overlaps_plane};
+use delone_fuzz::Coordinates;
+use delone_predicates::arithmetic::decode_odd;
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
+use num_bigint::{BigInt, Sign};
+use num_traits::{Signed, ToPrimitive, Zero};
 
 const MOST: usize = 9;
+/// Rings of any doubles have fewer corners, as their rational numbers are long.
+const FEW: usize = 6;
+/// Squares of larger numbers, and of smaller extents, are out of range.
+const RANGE: [f64; 2] = [1e-120, 1e120];
 /// The largest coordinate of a lattice.
 const SIDE: i64 = 6;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let mut bytes = Unstructured::new(bytes);
-    if let (Ok(p), Ok(q)) = (whole(&mut bytes), whole(&mut bytes)) {
-        compare_exactly(&p, &q);
+    if bytes.ratio(1, 2) == Ok(true) {
+        if let (Ok(p), Ok(q)) = (whole(&mut bytes), whole(&mut bytes)) {
+            compare_lattices(&p, &q);
+        }
+    } else if let Ok(mut coordinates) = Coordinates::new(&mut bytes)
+        && let (Ok(p), Ok(q)) = (
+            any(&mut bytes, &mut coordinates),
+            any(&mut bytes, &mut coordinates),
+        )
+    {
+        compare_any(&p, &q);
     }
 });
 
@@ -87,86 +104,93 @@ fn whole(bytes: &mut Unstructured) -> Result<Cell> {
     Ok(Cell { rings })
 }
 
-/// A rational number, in lowest terms.
-#[derive(Clone, Copy)]
-struct Ratio(i128, i128);
+/// A ring of any doubles.
+fn any(bytes: &mut Unstructured, coordinates: &mut Coordinates) -> Result<Cell> {
+    let mut ring: Vec<Point2> = Vec::new();
+    for _ in 0..bytes.int_in_range(3..=FEW)? {
+        let next: Point2 = coordinates.point(bytes)?;
+        // Moved from an earlier corner, or not.
+        let near = match ring.is_empty() || bytes.ratio(1, 2)? {
+            true => [0.0; 2],
+            false => *bytes.choose(&ring)?,
+        };
+        ring.push([0, 1].map(|k| (near[k] + next[k]).clamp(-RANGE[1], RANGE[1])));
+    }
+    Ok(Cell {
+        rings: vec![(false, ring)],
+    })
+}
 
-impl Ratio {
-    fn of(n: i128, d: i128) -> Self {
-        let (mut a, mut b) = (n.abs(), d.abs());
-        while b != 0 {
-            (a, b) = (b, a % b);
+/// A place of the plane: x, y and a positive divisor of both.
+type Place = [BigInt; 3];
+
+/// Places in units of a power of two, and its exponent, such that all are integers.
+fn unit_of(cells: [&Cell; 2]) -> i64 {
+    let rings = cells.iter().flat_map(|cell| &cell.rings);
+    let all = rings.flat_map(|(_, ring)| ring.iter().flatten());
+    let used = all.map(|&x| decode_odd(x)).filter(|x| x.0 != 0);
+    used.map(|x| i64::from(x.1)).min().unwrap_or(0)
+}
+
+fn exact(v: Point2, unit: i64) -> Place {
+    let integer = |x: f64| {
+        let (magnitude, exponent) = decode_odd(x);
+        if magnitude == 0 {
+            return BigInt::ZERO;
         }
-        let sign = if d < 0 { -1 } else { 1 };
-        Self(sign * n / a.max(1), sign * d / a.max(1))
-    }
-
-    fn plus(self, o: Self) -> Self {
-        Self::of(self.0 * o.1 + o.0 * self.1, self.1 * o.1)
-    }
-
-    fn minus(self, o: Self) -> Self {
-        self.plus(Self(-o.0, o.1))
-    }
-
-    fn times(self, o: Self) -> Self {
-        Self::of(self.0 * o.0, self.1 * o.1)
-    }
-
-    fn over(self, o: Self) -> Self {
-        Self::of(self.0 * o.1, self.1 * o.0)
-    }
+        let digits = BigInt::from(magnitude) << (i64::from(exponent) - unit) as usize;
+        if x < 0.0 { -digits } else { digits }
+    };
+    [integer(v[0]), integer(v[1]), BigInt::from(1)]
 }
 
-type Place = [Ratio; 2];
-
-fn exact(v: Point2) -> Place {
-    v.map(|x| Ratio(x as i128, 1))
+/// The line through two places, as coefficients: positive to its left.
+fn line(a: &Place, b: &Place) -> Place {
+    let minor = |i: usize, j: usize| &a[i] * &b[j] - &a[j] * &b[i];
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
-/// Twice the area of a triangle, positive if it is counterclockwise.
-fn turn(a: Place, b: Place, c: Place) -> Ratio {
-    let [u, v] = [b, c].map(|p| [0, 1].map(|k| p[k].minus(a[k])));
-    u[0].times(v[1]).minus(u[1].times(v[0]))
+fn at(line: &Place, p: &Place) -> BigInt {
+    &line[0] * &p[0] + &line[1] * &p[1] + &line[2] * &p[2]
 }
 
-/// Twice the integral of the winding number of a ring over a counterclockwise triangle: the ring is
-/// cut along each of its sides.
-fn within(ring: &[Place], triangle: [Place; 3]) -> f64 {
+/// Twice the integral of the winding number of a ring over a counterclockwise triangle, times two to
+/// the power of [`DIGITS`]: the ring is cut along each of its sides.
+fn within(ring: &[Place], triangle: [&Place; 3]) -> BigInt {
     let mut ring = ring.to_vec();
     for k in 0..3 {
-        let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
+        let side = line(triangle[k], triangle[(k + 1) % 3]);
         let mut cut = Vec::new();
-        for (i, &q) in ring.iter().enumerate() {
-            let p = ring[(i + ring.len() - 1) % ring.len()];
-            let (s, t) = (turn(a, b, p), turn(a, b, q));
-            if (s.0 < 0 && t.0 > 0) || (s.0 > 0 && t.0 < 0) {
-                let share = s.over(s.minus(t));
-                cut.push([0, 1].map(|k| p[k].plus(q[k].minus(p[k]).times(share))));
+        for (i, q) in ring.iter().enumerate() {
+            let p = &ring[(i + ring.len() - 1) % ring.len()];
+            let (s, t) = (at(&side, p), at(&side, q));
+            if (s.is_negative() && t.is_positive()) || (s.is_positive() && t.is_negative()) {
+                let (s, t) = (s.abs(), t.abs());
+                cut.push([0, 1, 2].map(|k| &p[k] * &t + &q[k] * &s));
             }
-            if t.0 >= 0 {
-                cut.push(q);
+            if !t.is_negative() {
+                cut.push(q.clone());
             }
         }
         ring = cut;
     }
     let terms = (0..ring.len()).map(|k| {
-        let (p, q) = (ring[k], ring[(k + 1) % ring.len()]);
-        let term = p[0].times(q[1]).minus(p[1].times(q[0]));
-        term.0 as f64 / term.1 as f64
+        let (p, q) = (&ring[k], &ring[(k + 1) % ring.len()]);
+        ((&p[0] * &q[1] - &p[1] * &q[0]) << DIGITS) / (&p[2] * &q[2])
     });
     terms.sum()
 }
 
+/// Digits of areas behind the point.
+const DIGITS: usize = 200;
+
 /// The rings of a cell with what is inside to their left: their winding numbers are its own.
-fn directed(cell: &Cell) -> Vec<Vec<Place>> {
-    let origin = exact([0.0; 2]);
+fn directed(cell: &Cell, unit: i64) -> Vec<Vec<Place>> {
     let rings = cell.rings.iter().map(|(hole, ring)| {
-        let mut ring: Vec<Place> = ring.iter().map(|&v| exact(v)).collect();
-        let doubled = (0..ring.len()).fold(Ratio(0, 1), |sum, k| {
-            sum.plus(turn(origin, ring[k], ring[(k + 1) % ring.len()]))
-        });
-        if (doubled.0 < 0) != *hole {
+        let mut ring: Vec<Place> = ring.iter().map(|&v| exact(v, unit)).collect();
+        let sides = (0..ring.len()).map(|k| line(&ring[k], &ring[(k + 1) % ring.len()]));
+        let doubled: BigInt = sides.map(|[_, _, area]| area).sum();
+        if doubled.is_negative() != *hole {
             ring.reverse();
         }
         ring
@@ -174,28 +198,37 @@ fn directed(cell: &Cell) -> Vec<Vec<Place>> {
     rings.collect()
 }
 
-/// The integral of the product of the winding numbers of two cells: of fans of triangles in the
-/// second one.
-fn product(p: &[Vec<Place>], q: &[Vec<Place>]) -> f64 {
-    let mut sum = 0.0;
+/// The integral of the product of the winding numbers of two cells, in units: of fans of triangles in
+/// the second one.
+fn product(p: &[Vec<Place>], q: &[Vec<Place>]) -> BigInt {
+    let mut sum = BigInt::ZERO;
     for other in q {
         for pair in other[1..].windows(2) {
-            let sign = turn(other[0], pair[0], pair[1]).0.signum();
-            let triangle = match sign {
-                1 => [other[0], pair[0], pair[1]],
-                -1 => [other[0], pair[1], pair[0]],
-                _ => continue,
+            let turn = at(&line(&other[0], &pair[0]), &pair[1]);
+            let triangle = match turn.sign() {
+                Sign::Plus => [&other[0], &pair[0], &pair[1]],
+                Sign::Minus => [&other[0], &pair[1], &pair[0]],
+                Sign::NoSign => continue,
             };
-            let parts = p.iter().map(|ring| within(ring, triangle));
-            sum += sign as f64 * parts.sum::<f64>();
+            for ring in p {
+                sum += turn.signum() * within(ring, triangle);
+            }
         }
     }
-    sum / 2.0
+    sum
+}
+
+/// The double next to an area.
+fn rounded(doubled: &BigInt, unit: i64) -> f64 {
+    let beyond = doubled.bits().saturating_sub(100);
+    let head = (doubled >> beyond).to_f64().expect("a hundred bits");
+    let power = beyond as i64 - DIGITS as i64 - 1 + 2 * unit;
+    head * 2.0_f64.powi((power / 2) as i32) * 2.0_f64.powi((power - power / 2) as i32)
 }
 
 /// The winding numbers of rings around places that are on no side, in integers: the least and the
 /// greatest.
-fn windings(rings: &[&[Place]]) -> [i64; 2] {
+fn windings(rings: &[&[Point2]]) -> [i64; 2] {
     let mut range = [0, 0];
     for i in -2 * SIDE..2 * SIDE {
         for j in -2 * SIDE..2 * SIDE {
@@ -204,7 +237,7 @@ fn windings(rings: &[&[Place]]) -> [i64; 2] {
             for ring in rings {
                 for k in 0..ring.len() {
                     let [a, b] =
-                        [k, (k + 1) % ring.len()].map(|k| ring[k].map(|x| (x.0 as i64) << 20));
+                        [k, (k + 1) % ring.len()].map(|k| ring[k].map(|x| (x as i64) << 20));
                     let left = (b[0] - a[0]) * (y - a[1]) - (x - a[0]) * (b[1] - a[1]) > 0;
                     number += i64::from(a[1] <= y && y < b[1] && left);
                     number -= i64::from(b[1] <= y && y < a[1] && !left);
@@ -217,34 +250,86 @@ fn windings(rings: &[&[Place]]) -> [i64; 2] {
 }
 
 /// Rings of lattices: what is accepted, and what they share.
-fn compare_exactly(p: &Cell, q: &Cell) {
+fn compare_lattices(p: &Cell, q: &Cell) {
     let known = Flat::of(&[p, q]).checked();
-    let both = [p, q].map(directed);
-    for (k, rings) in both.iter().enumerate() {
+    let both = [p, q].map(|cell| directed(cell, 0));
+    for (k, (cell, rings)) in [p, q].into_iter().zip(&both).enumerate() {
         if known.faults[k] == Fault::Crossing as u8 {
             return;
         }
-        for ring in rings {
+        for (_, ring) in &cell.rings {
             let [low, high] = windings(&[ring]);
             assert!(high - low <= 1, "a ring that crosses itself");
         }
         if known.faults[k] != 0 {
             return;
         }
-        let area = product(rings, &directed(&square()));
+        let area = rounded(&product(rings, &directed(&square(), 0)), 0);
         assert!((known.areas[k] - area).abs() <= 1e-13 * area);
     }
     // How rings nest is decided elsewhere.
     let nested = |rings: &[Vec<Place>]| {
-        let all: Vec<&[Place]> = rings.iter().map(|ring| &ring[..]).collect();
+        let flat = |ring: &Vec<Place>| -> Vec<Point2> {
+            let double = |x: &BigInt| x.to_f64().expect("a small integer");
+            ring.iter()
+                .map(|p| [double(&p[0]), double(&p[1])])
+                .collect()
+        };
+        let all: Vec<Vec<Point2>> = rings.iter().map(flat).collect();
+        let all: Vec<&[Point2]> = all.iter().map(|ring| &ring[..]).collect();
         windings(&all) == [0, 1]
     };
     if both.iter().all(|rings| nested(rings)) {
-        let expected = product(&both[0], &both[1]);
+        let expected = rounded(&product(&both[0], &both[1]), 0);
         for found in [shared(&[p], &[q]), shared(&[q], &[p])] {
             assert!((found - expected).abs() <= 1e-11, "{found} {expected}");
         }
     }
+}
+
+/// Rings of any doubles: their areas, and what they share.
+fn compare_any(p: &Cell, q: &Cell) {
+    let [first, second] = [p, q].map(extent);
+    let size = first.min(second);
+    if size < RANGE[0] {
+        return;
+    }
+    let known = Flat::of(&[p, q]).checked();
+    if known.faults != [0, 0] {
+        return;
+    }
+    let unit = unit_of([p, q]);
+    let both = [p, q].map(|cell| directed(cell, unit));
+    for (k, (rings, side)) in both.iter().zip([first, second]).enumerate() {
+        let doubled: BigInt = rings[0]
+            .windows(2)
+            .map(|s| line(&s[0], &s[1])[2].clone())
+            .sum();
+        let last = line(&rings[0][rings[0].len() - 1], &rings[0][0]);
+        let area = rounded(&((doubled + &last[2]) << DIGITS), unit);
+        assert!((known.areas[k] - area).abs() <= 1e-15 * area + 1e-28 * side * side);
+    }
+    let expected = product(&both[0], &both[1]);
+    let expected = if expected.is_zero() {
+        0.0
+    } else {
+        rounded(&expected, unit)
+    };
+    for found in [shared(&[p], &[q]), shared(&[q], &[p])] {
+        // Smaller parts are left out.
+        let bound = 1e-15 * expected + 2e-24 * size * size;
+        assert!((found - expected).abs() <= bound, "{found} {expected}");
+    }
+}
+
+/// The longer side of the box of a ring.
+fn extent(cell: &Cell) -> f64 {
+    let ring = &cell.rings[0].1;
+    let side = |k: usize| {
+        let all = ring.iter().map(|v| v[k]);
+        all.clone().fold(f64::MIN, f64::max) - all.fold(f64::MAX, f64::min)
+    };
+    side(0).max(side(1))
 }
 
 /// All of the lattice.
