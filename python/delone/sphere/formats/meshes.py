@@ -290,9 +290,11 @@ def read_exodus(variables: Variables, choices: Choices) -> Cells:
         corners.append(flat)
         lengths.append(np.diff(starts))
     every = np.concatenate(lengths)
+    # Fields of several blocks are in several variables.
+    dims = variables[blocks[0][1]].dims[:1] if len(blocks) == 1 else ()
     return Cells(
         format="Exodus",
-        dims=(),
+        dims=dims,
         shape=(len(every),),
         nodes=vectors,
         corners=np.concatenate(corners),
@@ -312,7 +314,8 @@ def _exodus_nodes(variables: Variables) -> Floats:
         found = np.column_stack([numbers(variables[name], name) for name in names])
     if found.ndim != 2 or found.shape[1] != 3:
         raise ShapeError(f"Exodus: nodes must have three coordinates, got shape {found.shape}")
-    return found.astype(np.float64)
+    # The core reads rows, and files have columns.
+    return np.ascontiguousarray(found, dtype=np.float64)
 
 
 def read_uxarray(given: Any, choices: Choices) -> Cells:
