@@ -407,3 +407,14 @@ def test_concave_cells_with_a_corner_in_their_middle() -> None:
         for other in (cell, Grid.from_mesh(octants), Grid.from_gaussian(4)):
             for found in (Overlaps(cell, other).areas, Overlaps(other, cell).areas):
                 assert found.sum() == pytest.approx(2 * np.pi / 3, rel=1e-15)
+
+
+def test_long_sides_of_a_cell_with_many_corners() -> None:
+    """Sides are found by boxes that hold their arcs, which bulge between the ends."""
+    many = [(lon, -0.3 * (k % 2)) for k, lon in enumerate(np.linspace(0, 80, 71))]
+    source = Grid.from_mesh(lonlat=[[*many, (40, 75)]])
+    assert source.report.concave.tolist() == [0]
+    for target in (Grid.from_healpix(16), Grid.from_healpix(1)):
+        for overlaps in (Overlaps(source, target), Overlaps(target, source)):
+            covered = overlaps.areas.sum() / source.areas[0]
+            assert covered == pytest.approx(1, rel=1e-13)
