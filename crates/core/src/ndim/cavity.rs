@@ -2,7 +2,7 @@
 
 use super::cell::{INFINITE, Mesh};
 use crate::base::error::{Error, Result};
-use crate::base::memory::{self, clear_with_room, filled};
+use crate::base::memory::{self, filled};
 use crate::base::watch::Pace;
 
 /// A facet of the rim: a removed cell, the number of the corner opposite, and the cell outside.
@@ -17,7 +17,8 @@ pub struct Room {
     /// The cells that the last insertion has removed.
     pub hole: Vec<u32>,
     rim: Vec<Side>,
-    /// The ghosts that it has made.
+    /// The simplices that it has made, and the ghosts.
+    simplices: Vec<u32>,
     pub ghosts: Vec<u32>,
     ridges: Vec<Entry>,
     stamp: u32,
@@ -28,6 +29,7 @@ impl Room {
         Self {
             hole: Vec::new(),
             rim: Vec::new(),
+            simplices: Vec::new(),
             ghosts: Vec::new(),
             ridges: Vec::new(),
             stamp: 0,
@@ -187,7 +189,8 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
             room.ridges = filled(size, 0)?;
         }
         room.ridges[..size].fill(0);
-        clear_with_room(&mut room.ghosts, 0)?;
+        room.simplices.clear();
+        room.ghosts.clear();
         let rim = std::mem::take(&mut room.rim);
         for &(old, i, outside) in &rim {
             pace.spend(1)?;
@@ -199,12 +202,13 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
             if self.cells[c as usize].is_ghost() {
                 memory::push(&mut room.ghosts, c)?;
             } else {
-                self.measure_simplex(c);
+                memory::push(&mut room.simplices, c)?;
                 self.last = c;
             }
             self.join(c, &mut room.ridges[..size]);
         }
         room.rim = rim;
+        self.measure_simplices(&room.simplices);
         for &ghost in &room.ghosts {
             self.measure_ghost(ghost);
         }
@@ -219,8 +223,8 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
     fn star(&mut self, p: u32, old: u32, i: usize, outside: u32) -> Result<u32> {
         let cell = &self.cells[old as usize];
         let mut vertices = [p; V];
-        for (j, k) in (0..V).filter(|&k| k != i).enumerate() {
-            vertices[j + 1] = cell.vertices[k];
+        for j in 0..D {
+            vertices[j + 1] = cell.vertices[j + usize::from(j >= i)];
         }
         // The point is on the side of the facet where corner i is: in its place it has the same
         // orientation. Moving it to the front takes i exchanges.
@@ -264,14 +268,13 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
         }
     }
 
-    /// Whether the vertices but 0 and `k` are those of another cell but 0 and `opposite`.
+    /// Whether the vertices but 0 and `k` are those of another cell but 0 and `opposite`. New vertices come
+    /// first and the others keep their places, so vertices of two cells are in the same order.
     #[inline(always)]
     fn is_same_ridge(&self, v: &[u32; V], k: usize, other: u32, opposite: usize) -> bool {
         let w = &self.cells[other as usize].vertices;
-        // Both have the same number of vertices, so it is enough that all of one are among those of
-        // the other.
-        (1..V)
-            .filter(|&j| j != k)
-            .all(|j| (1..V).fold(false, |any, l| any | ((l != opposite) & (w[l] == v[j]))))
+        (1..D).fold(true, |all, j| {
+            all & (v[j + usize::from(j >= k)] == w[j + usize::from(j >= opposite)])
+        })
     }
 }

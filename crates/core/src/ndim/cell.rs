@@ -3,6 +3,7 @@
 use super::filter::{Matrix, Test, U, minus};
 use super::fine::Fine;
 use super::frame::Frame;
+use super::lanes::{self, LANES};
 use super::sites::Sites;
 use crate::base::arrays::Given;
 use crate::base::error::{Error, Result};
@@ -295,6 +296,41 @@ impl<const D: usize, const V: usize, const P: usize> Mesh<D, V, P> {
             let v = &self.cells[c as usize].vertices;
             let weights = self.sites.is_lifted.then(|| self.lifts(v));
             self.cells[c as usize].test = Test::lifted(&a, weights);
+        }
+    }
+
+    /// Prepares the tests of simplices that have the first vertex in common.
+    #[inline(always)]
+    pub fn measure_simplices(&mut self, simplices: &[u32]) {
+        if !self.sites.filtered {
+            return;
+        }
+        for some in simplices.chunks(LANES) {
+            let (mut a, mut weights) = ([[[0.0; LANES]; D]; D], [[0.0; LANES]; D]);
+            for l in 0..LANES {
+                // Lanes without a simplex repeat the first one.
+                let c = some.get(l).unwrap_or(&some[0]);
+                let v = &self.cells[*c as usize].vertices;
+                let o = &self.sites.scaled[v[0] as usize];
+                for i in 0..D {
+                    let difference = minus(&self.sites.scaled[v[i + 1] as usize], o);
+                    for k in 0..D {
+                        a[i][k][l] = difference[k];
+                    }
+                }
+                if self.sites.is_lifted {
+                    for (to, weight) in weights.iter_mut().zip(self.lifts(v)) {
+                        to[l] = weight;
+                    }
+                }
+            }
+            let tests = lanes::lifted(&a, self.sites.is_lifted.then_some(&weights));
+            for (&c, test) in some.iter().zip(tests) {
+                match test {
+                    Some(test) => self.cells[c as usize].test = test,
+                    None => self.measure_simplex(c),
+                }
+            }
         }
     }
 

@@ -23,7 +23,7 @@
 //!
 //! | stage | file | decides |
 //! |---|---|---|
-//! | rounded, with a bound proven afterward | `filter` | nearly everything |
+//! | rounded, with a bound proven afterward | `filter`, `lanes` | nearly everything |
 //! | double-double, with the same proof | `fine`, `simplex` | points near a sphere or a plane |
 //! | residues modulo primes | `residues` | that a value is zero |
 //! | integers | `frame`, `limbs` | the rest |
@@ -46,6 +46,7 @@ mod flat;
 mod frame;
 pub mod halfspaces;
 mod hull;
+mod lanes;
 mod lazy;
 mod limbs;
 mod location;

@@ -9,6 +9,7 @@ use super::super::cell::Mesh;
 use super::super::filter::{Test, U, barycentric, invert, minus};
 use super::super::fine::Fine;
 use super::super::frame::Integers;
+use super::super::lanes::{self, LANES};
 use super::super::simplex::fine_barycentric;
 use super::super::sites::{MOST, Sites};
 use super::sets::Random;
@@ -162,6 +163,67 @@ fn check<const D: usize, const V: usize, const P: usize>() -> [f64; 5] {
     used
 }
 
+/// Simplices that are measured at once: the part of a bound that errors have used, and how many simplices need
+/// pivots.
+fn check_lanes<const D: usize, const V: usize, const P: usize>() -> (f64, usize) {
+    let mut r = Random::new(29 + D as u64);
+    let (mut used, mut alone) = (0.0f64, 0);
+    for round in 0..40 {
+        let mut drawn: [([[f64; P]; V], [f64; P]); LANES] =
+            std::array::from_fn(|l| drawn::<D, V, P>(&mut r, round + l as u64));
+        // Edges along the axes in turn: the first pivot is zero.
+        let (v, _) = &mut drawn[LANES - 1];
+        *v = std::array::from_fn(|i| {
+            std::array::from_fn(|k| if i > 0 && k == i % D { 0.75 } else { 0.0 })
+        });
+        // The point has the weight of the first corner.
+        let weighted = round % 2 == 1;
+        let weights: [[f64; LANES]; D] = std::array::from_fn(|_| {
+            std::array::from_fn(|_| if weighted { r.unit() - 0.5 } else { 0.0 })
+        });
+        let differences = drawn
+            .map(|(v, _)| -> [[f64; P]; D] { std::array::from_fn(|i| minus(&v[i + 1], &v[0])) });
+        let a = std::array::from_fn(|i| std::array::from_fn(|k| differences.map(|a| a[i][k])));
+        let tests = lanes::lifted(&a, weighted.then_some(&weights));
+        assert!(tests[LANES - 1].is_none());
+        for (l, test) in tests.iter().enumerate() {
+            let Some(test) = test else {
+                alone += 1;
+                continue;
+            };
+            let (v, p) = &drawn[l];
+            let from =
+                |q: &[f64; P]| -> Vec<_> { (0..D).map(|k| exact(q[k]) - exact(v[0][k])).collect() };
+            let a: Vec<_> = v[1..].iter().map(from).collect();
+            let height = |i: usize| square(&a[i]) - exact(weights[i][l]);
+            let heights: Vec<_> = (0..D).map(height).collect();
+            let d = from(p);
+            let truth = power(&a, &heights, &d, square(&d)).unwrap();
+            let (value, bound) = test.value(&minus(p, &v[0]), false);
+            let part = gap(value, &truth) / bound;
+            assert!(part <= 1.0, "{D}-D round {round} lane {l}: {part}");
+            used = used.max(part);
+        }
+    }
+    (used, alone)
+}
+
+#[test]
+fn bounds_of_several_simplices_hold_and_are_not_loose() {
+    for (used, alone) in [
+        check_lanes::<2, 3, 4>(),
+        check_lanes::<3, 4, 4>(),
+        check_lanes::<4, 5, 4>(),
+        check_lanes::<6, 7, 8>(),
+        check_lanes::<8, 9, 8>(),
+    ] {
+        println!("{used} {alone}");
+        assert!(used > 1e-4, "{used}");
+        // One in each round, and some that are thin.
+        assert!(alone > 40 && alone < 100, "{alone}");
+    }
+}
+
 /// Sites with weights of one kind, or in a flat: the corners and then a point.
 fn lifted<const D: usize, const V: usize, const P: usize>(
     r: &mut Random,
@@ -289,6 +351,16 @@ fn check_parts<const D: usize, const V: usize, const P: usize>() {
     let size = test.x.iter().map(|x| x * x).sum::<f64>().sqrt();
     let slope = norm * (2.0 * d + 8.0) * U * sizes + (d + 5.0) * U * size;
     about(2.0 * test.q0 / size, slope);
+    about(2.0 * test.q1 * size, slope);
+    let mut far = [0.0; P];
+    far[0] = 2.0;
+    about(test.value(&far, false).1, slope * (size + 4.0 / size) / 2.0);
+    let lanes = a.map(|row| std::array::from_fn(|k| [row[k]; LANES]));
+    for test in lanes::lifted(&lanes, Some(&[[weight; LANES]; D])) {
+        let test = test.unwrap();
+        about(2.0 * test.q0 / size, slope);
+        about(2.0 * test.q1 * size, slope);
+    }
     let corners: [&[f64; P]; V] = std::array::from_fn(|i| &v[i]);
     let fine = Fine::<D>::lifted(&corners, [Pair::from_double(weight); D]);
     about(fine.error(), norm * (8.0 * d + 48.0) * U * U * sizes);
