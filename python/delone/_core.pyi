@@ -2295,15 +2295,14 @@ def simplify2(
     present: int,
     points: NDArray[np.float64],
     z: NDArray[np.float64],
-    homes: NDArray[np.int32],
     max_error: float,
     max_triangles: int,
     workers: int,
 ) -> Simplified2:
     """Inserts points into a `coarse` surface, always the one that is farthest from it,
     until none is farther than `max_error` or there would be more than `max_triangles`.
-    `segments` are edges that stay, `present` is the number of triangles, `points` (rows
-    of x, y, z) and `homes` are the other points and their triangles.
+    `segments` are edges that stay, `present` is the number of triangles, `points` and
+    `z` are the other points.
     """
 
 def sizes(

@@ -214,6 +214,25 @@ def test_rasters_need_no_full_triangulation():
     assert rows(found) == rows(TIN.from_raster(bumps(), **lined).simplify(max_error=0.3))
 
 
+@pytest.mark.parametrize("step", [1.0, 0.37])
+def test_rasters_with_missing_nodes_are_simplified_as_their_points(step):
+    """Rows from north to south, missing corners, and steps that are decimals."""
+    rng = np.random.default_rng(3)
+    heights = rng.integers(0, 9, (17, 23)).astype(float)
+    heights[rng.random(heights.shape) < 0.2] = np.nan
+    heights[:4, :5] = heights[-1, -6:] = np.nan
+    x, y = np.arange(23) * step + 512_000, np.arange(17)[::-1] * step + 5_400_000
+    nodes = np.column_stack([each.ravel() for each in (*np.meshgrid(x, y), heights)])
+    nodes = nodes[~np.isnan(nodes[:, 2])]
+    whole = TIN.from_points(rng.permutation(nodes), planar=True)
+    for error in (4, 1.5, 0):
+        found = TIN.from_raster(Grid(heights[::-1], x, y[::-1]), max_error=error, planar=True)
+        other = whole.simplify(max_error=error)
+        order = [np.lexsort(tin.xyz.T) for tin in (found, other)]
+        assert np.array_equal(found.xyz[order[0]], other.xyz[order[1]])
+        assert max(distances(nodes, found)) <= error
+
+
 def test_files_of_rasters(tmp_path):
     path = tmp_path / "dem.asc"
     head = "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 2\nNODATA_value -9999\n"

@@ -8,7 +8,7 @@ use delone_core::terrain::volume::{self, Other, Surface};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, column, each_in_range, flat, in_range, rows, table};
+use crate::arrays::{Column, Table, column, flat, in_range, rows, table};
 use crate::errors::Outcome;
 use crate::given::{checked, unequal};
 use crate::signals::watched;
@@ -179,8 +179,7 @@ pub struct Simplified2 {
 
 /// Inserts points into a `coarse` surface, always the one that is farthest from it, until none is farther
 /// than `max_error` or there would be more than `max_triangles`. `segments` are edges that stay,
-/// `present` is the number of triangles, `points` (rows of x, y, z) and `homes` are the other points and
-/// their triangles.
+/// `present` is the number of triangles, `points` and `z` are the other points.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn simplify2(
@@ -190,18 +189,13 @@ pub fn simplify2(
     present: usize,
     points: PyReadonlyArray2<'_, f64>,
     z: PyReadonlyArray1<'_, f64>,
-    homes: PyReadonlyArray1<'_, i32>,
     max_error: f64,
     max_triangles: usize,
     workers: usize,
 ) -> Outcome<Simplified2> {
     let surface = coarse.surface()?;
     let points = rows(&points, "points")?;
-    let (z, homes) = (heights_of(&z, points.len())?, flat(&homes, "homes")?);
-    if homes.len() != points.len() {
-        return Err(unequal().into());
-    }
-    each_in_range(homes, 0, surface.given.simplices.len(), "homes")?;
+    let z = heights_of(&z, points.len())?;
     let segments = rows::<i32, 2>(&segments, "segments")?;
     in_range(segments, 0, surface.given.points.len(), "segments")?;
     let segments: Vec<_> = segments.iter().map(|s| s.map(|v| v as u32)).collect();
@@ -212,7 +206,6 @@ pub fn simplify2(
         triangles: present,
         points,
         z,
-        homes,
         max_error,
         max_triangles,
         workers,

@@ -260,13 +260,23 @@ def ground_of(tin: Surface, keep: str) -> Ground:
     )
 
 
-def ground_of_points(
-    points: Floats, z: Floats, crs: str | None, units: str | None, workers: int | None
+def ground_of_points(  # noqa: PLR0917
+    points: Floats,
+    z: Floats,
+    crs: str | None,
+    units: str | None,
+    workers: int | None,
+    rim: Rows | None = None,
 ) -> Ground:
-    """Return points without lines, of which only the corners of the hull are kept."""
-    corners, _ = _core.hull2(points)
+    """Return points without lines, of which only the corners of the hull are kept.
+
+    `rim` may name some of the points, among which are all corners.
+    """
     fixed = np.zeros(len(points), dtype=bool)
-    fixed[corners] = True
+    if rim is None or len(rim) < 3:
+        fixed[_core.hull2(points)[0]] = True
+    else:
+        fixed[rim[_core.hull2(points[rim])[0]]] = True
     none = np.empty((0, 2), dtype=np.int32)
     soft = np.empty(0, dtype=bool)
     rows = np.flatnonzero(fixed), np.flatnonzero(~fixed)
@@ -285,7 +295,6 @@ def simplified(
     mesh, free, workers = coarse.mesh, ground.free, as_workers(ground.workers)
     (places, corners), _ = _scaled(ground.points[free], mesh.points)
     (z, heights), rise = _scaled(ground.z[free], coarse.z)
-    homes = _core.find_simplex2(corners, mesh.simplices, mesh.neighbors, places, workers)
     goal = float(np.nextafter(np.ldexp(error, -rise), 0.0)) if rise else error
     found = _core.simplify2(
         _Sheet(corners, mesh.simplices, mesh.neighbors, heights),
@@ -293,7 +302,6 @@ def simplified(
         present,
         places,
         z,
-        homes,
         goal,
         most,
         workers,

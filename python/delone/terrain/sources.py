@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from delone.terrain import faces as faces_
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from delone._base.types import Floats
+    from delone._base.types import Floats, Rows
 
 __all__ = ["Sources"]
 
@@ -102,7 +102,7 @@ class Sources(HullTiling):
         <TIN of 4 points: 2 triangles, heights 0 to 5>
         """
         nodes: Any
-        distinct = True
+        distinct, rim = True, None
         if isinstance(dem, str | os.PathLike):
             from delone.io import read_raster
 
@@ -110,7 +110,7 @@ class Sources(HullTiling):
         else:
             if band is not None or step != 1:
                 raise InputError("band and step are for files of rasters: give a path, or a slice")
-            nodes, distinct, declared = _nodes_of(dem, bounds, nodata)
+            nodes, distinct, declared, rim = _nodes_of(dem, bounds, nodata)
             crs = building.system_of(crs, declared)
         if max_error is None and max_triangles is None:
             return cls._of_points(nodes, crs, options)
@@ -121,7 +121,7 @@ class Sources(HullTiling):
         bare = building.bare(
             nodes, crs=crs, units=options.get("units"), planar=options.get("planar", False)
         )
-        ground = simplifying.ground_of_points(*bare, options.get("workers"))
+        ground = simplifying.ground_of_points(*bare, options.get("workers"), rim)
         found = simplifying.simplified(ground, cls._built, **goal)
         return found.surface(**goal)  # type: ignore[no-any-return]
 
@@ -243,8 +243,18 @@ class Sources(HullTiling):
         return cls._of_points(surface.points, options.pop("crs", None), options)
 
 
-def _nodes_of(dem: Any, bounds: Any, nodata: Any) -> tuple[Floats, bool, str | None]:
-    """Return the nodes with a height, (n, 3), whether they are distinct, and their system."""
+class _Nodes(NamedTuple):
+    """The nodes of a raster that have a height."""
+
+    xyz: Floats
+    distinct: bool
+    crs: str | None
+    # Among these are all corners of the hull; None if it is not known.
+    rim: Rows | None
+
+
+def _nodes_of(dem: Any, bounds: Any, nodata: Any) -> _Nodes:
+    """Return the nodes of a raster that have a height."""
     from delone.io.dem import as_bounds
     from delone.io.netcdf import heights_of_array, is_array
     from delone.io.nodata import as_nodata, is_nodata, require_declared
@@ -254,14 +264,25 @@ def _nodes_of(dem: Any, bounds: Any, nodata: Any) -> tuple[Floats, bool, str | N
         values, x, y, crs = heights_of_array(dem, box, empty)
     else:
         values, x, y = slopes.cells_of(dem)
-    grid = np.stack((*np.meshgrid(x, y), values), axis=-1).reshape(-1, 3)
+    values = np.asarray(values, dtype=np.float64)
+    kept = ~(np.isnan(values) | is_nodata(values, empty))
     if box is not None:
         left, bottom, right, top = box
-        grid = grid[(grid[:, 0] >= left) & (grid[:, 0] <= right)]
-        grid = grid[(grid[:, 1] >= bottom) & (grid[:, 1] <= top)]
-        if not len(grid):
+        inside = np.logical_and.outer((y >= bottom) & (y <= top), (x >= left) & (x <= right))
+        if not inside.any():
             raise InputError(f"no node of the raster is inside bounds={box}")
-    found = grid[~(np.isnan(grid[:, 2]) | is_nodata(grid[:, 2], empty))]
+        kept &= inside
+    grid = np.empty((*values.shape, 3))
+    grid[..., 0], grid[..., 1], grid[..., 2] = x, y[:, None], values
+    found = grid.reshape(-1, 3) if kept.all() else grid[kept]
     if not is_array(dem):
         require_declared(found[:, 2], empty, "the raster", file=False)
-    return found, len(np.unique(x)) == len(x) and len(np.unique(y)) == len(y), crs
+    distinct = len(np.unique(x)) == len(x) and len(np.unique(y)) == len(y)
+    steps = np.diff(x)
+    if not ((steps > 0).all() or (steps < 0).all()):
+        return _Nodes(found, distinct, crs, None)
+    # The first and last node of each row of the raster.
+    counts = kept.sum(axis=1)
+    counts = counts[counts > 0]
+    ends = np.cumsum(counts)
+    return _Nodes(found, distinct, crs, np.unique(np.concatenate((ends - counts, ends - 1))))

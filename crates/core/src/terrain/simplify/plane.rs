@@ -31,17 +31,6 @@ pub type Raised = [f64; 3];
 /// No point.
 pub const NONE: u32 = u32::MAX;
 
-/// A point in the list of its triangle.
-#[derive(Debug, Clone, Copy)]
-pub struct Place {
-    /// Where it is.
-    pub raised: Raised,
-    /// The next point of the list, or none.
-    pub next: u32,
-    /// Its row.
-    pub row: u32,
-}
-
 /// The position of a point.
 #[inline]
 pub fn below([x, y, _]: Raised) -> Point2 {
@@ -84,14 +73,17 @@ impl Span {
     }
 }
 
-/// Whether distances from planes through some of the points are computed without rounding.
-pub fn is_exact(points: impl Iterator<Item = Raised>) -> bool {
+/// Whether distances from planes through some of the points are computed without rounding, given all x, y
+/// and heights.
+pub fn is_exact(
+    x: impl Iterator<Item = f64>,
+    y: impl Iterator<Item = f64>,
+    z: impl Iterator<Item = f64>,
+) -> bool {
     let (mut across, mut up) = ([Span::EMPTY; 2], Span::EMPTY);
-    for [x, y, z] in points {
-        across[0].add(x);
-        across[1].add(y);
-        up.add(z);
-    }
+    x.for_each(|x| across[0].add(x));
+    y.for_each(|y| across[1].add(y));
+    z.for_each(|z| up.add(z));
     let low = across[0].low.min(across[1].low);
     let [kx, ky] = across.map(|axis| Span { low, ..axis }.bits().1);
     let (k, (rise, m)) = (kx.max(ky), up.bits());
@@ -165,6 +157,24 @@ impl Plane {
             return 0.0;
         }
         n + (self.constant + self.factor * dz.abs())
+    }
+
+    /// The first of the points of a column whose offset is greatest, and this offset, if it is greater than
+    /// `least`; heights that are NaN belong to no point.
+    #[inline]
+    pub fn worst_of(&self, x: f64, y: &[f64], z: &[f64], least: f64) -> Option<(usize, f64)> {
+        let mut most = least;
+        for (&y, &z) in y.iter().zip(z) {
+            let offset = self.offset([x, y, z]);
+            // False for NaN.
+            most = if offset > most { offset } else { most };
+        }
+        // The greatest offset rarely grows, so the point is searched only then.
+        if most > least {
+            let is_it = |(&y, &z): (&f64, &f64)| self.offset([x, y, z]) == most;
+            return y.iter().zip(z).position(is_it).map(|k| (k, most));
+        }
+        None
     }
 
     /// At least |n| / w, for a bound on |n|.

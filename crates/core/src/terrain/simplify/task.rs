@@ -20,13 +20,11 @@ pub struct Task<'a> {
     pub points: &'a [Point2],
     /// Their heights.
     pub z: &'a [f64],
-    /// The triangle in which each point lies.
-    pub homes: &'a [i32],
     /// The insertion ends when no point is farther from the surface.
     pub max_error: f64,
     /// It ends before there are more triangles.
     pub max_triangles: usize,
-    /// The number of threads for sorting points.
+    /// The number of threads for sorting and locating points.
     pub workers: usize,
 }
 

@@ -11,13 +11,11 @@ fn run(height: impl Fn(f64, f64) -> f64, step: f64, max_error: f64, most: usize)
     let last = (SIDE - 1) as f64;
     let corners = [[0.0, 0.0], [last, 0.0], [last, last], [0.0, last]];
     let mut points = Vec::new();
-    let mut homes = Vec::new();
     for i in 0..SIDE {
         for j in 0..SIDE {
             let p = [i as f64, j as f64];
             if !corners.contains(&p) {
                 points.push(p.map(|x| x * step));
-                homes.push(i32::from(p[1] > p[0]));
             }
         }
     }
@@ -38,12 +36,92 @@ fn run(height: impl Fn(f64, f64) -> f64, step: f64, max_error: f64, most: usize)
         triangles: 2,
         points: &points,
         z: &z,
-        homes: &homes,
         max_error,
         max_triangles: most,
         workers: 1,
     };
     simplify(task, &IDLE).unwrap()
+}
+
+/// The same by lists and by scans of a lattice.
+fn by_both(task: Task) -> [Simplified; 2] {
+    let lattice = Lattice::of(&task, &IDLE).unwrap().unwrap();
+    let exact = lattice.is_exact();
+    let mut marked = coarse(&task, &IDLE).unwrap();
+    let lists = Lists::of(&task, &mut marked, &IDLE).unwrap();
+    let mut first = Work::start(task, marked, lists, exact, &IDLE).unwrap();
+    first.run(&IDLE).unwrap();
+    let marked = coarse(&task, &IDLE).unwrap();
+    let mut second = Work::start(task, marked, lattice, exact, &IDLE).unwrap();
+    second.run(&IDLE).unwrap();
+    [first.found, second.found]
+}
+
+#[test]
+fn lists_and_lattices_agree() {
+    let mut state = 1_u32;
+    let mut random = |n: u32| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) % n
+    };
+    for round in 0..60 {
+        // Few heights, so that many errors are equal; uneven columns; missing nodes.
+        let (side, high) = (5 + random(12), 2 + random(9));
+        let uneven = |k: u32| f64::from(if round % 2 == 0 { k } else { k * k + k / 3 });
+        let last = uneven(side - 1);
+        let corners = [[0.0, 0.0], [last, 0.0], [last, last], [0.0, last]];
+        let heights = [1.0, 0.0, 2.0, 1.0];
+        let (mut points, mut z) = (Vec::new(), Vec::new());
+        for i in 0..side {
+            for j in 0..side {
+                let p = [uneven(i), uneven(j)];
+                if !corners.contains(&p) && random(8) > round % 3 {
+                    points.push(p);
+                    z.push(f64::from(random(high)));
+                }
+            }
+        }
+        let task = Task {
+            coarse: Given {
+                points: &corners,
+                simplices: &[[0, 1, 2], [0, 2, 3]],
+                neighbors: &[[-1, 1, -1], [-1, -1, 0]],
+            },
+            heights: &heights,
+            segments: &[[0, 2]],
+            triangles: 2,
+            points: &points,
+            z: &z,
+            max_error: f64::from(random(2)) / 2.0,
+            max_triangles: usize::MAX,
+            workers: 1,
+        };
+        // No point may be on an edge that stays.
+        let task = Task {
+            segments: if points.iter().any(|p| p[0] == p[1]) {
+                &[]
+            } else {
+                task.segments
+            },
+            ..task
+        };
+        let [lists, lattice] = by_both(task);
+        assert_eq!(lists.order, lattice.order, "{round}");
+        assert_eq!(lists.errors, lattice.errors);
+        assert_eq!(lists.triangles, lattice.triangles);
+        assert!(lattice.order.len() > 4);
+    }
+}
+
+#[test]
+fn nodes_with_rounded_coordinates_are_all_reached() {
+    // Columns at decimals: every node counts, also those that rounding moves to the side of an edge.
+    let found = run(|x, y| (x * y) % 7.0, 0.1, 0.0, usize::MAX);
+    let mut order = found.order.clone();
+    order.sort_unstable();
+    order.dedup();
+    assert_eq!(order.len(), found.order.len());
+    assert_eq!(found.errors.last(), Some(&0.0));
 }
 
 #[test]
