@@ -181,6 +181,8 @@ def test_sizes_and_shapes(tmp_path, command, figures):
     assert "larger than the size" in out and "none" in out
     code, _, err = command("tetrahedralize", source, "--size", "-1")
     assert code == 2 and "size must be above 0" in err
+    code, _, err = command("tetrahedralize", source, "--radius-edge", "0.5")
+    assert code == 2 and "--radius-edge must be at least 1, got 0.5" in err
     code, _, err = command(
         "tetrahedralize", source, "--boundary", "surface", "--size", "0.001", "--max-points", "99"
     )

@@ -255,6 +255,14 @@ def test_a_tolerance_is_a_distance(tolerance: float) -> None:
         delone.imprint_surface(points, faces, tolerance=tolerance)
 
 
+def test_a_tolerance_that_leaves_no_face_is_refused() -> None:
+    points, faces = box((0, 0, 0), (3, 2, 1))
+    with pytest.raises(delone.InputError, match=r"tolerance=50 leaves no face .* extends over 3"):
+        delone.tetrahedralize(points, faces, imprint=True, tolerance=50)
+    empty = delone.imprint_surface(points, faces[:0])
+    assert len(empty.faces) == 0
+
+
 def test_a_tolerance_needs_an_imprint() -> None:
     points, faces = box((0, 0, 0), (1, 1, 1))
     with pytest.raises(delone.InputError, match="tolerance is for imprint=True"):

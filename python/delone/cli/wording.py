@@ -98,6 +98,7 @@ def as_options(
         plain = _without_advice(plain)
     part = ", or a part with bounds"
     plain = plain.replace(part, ", or a part with --bounds" if "bounds" in options else "")
+    plain = re.sub(r"(--[\w-]+ must be [^;:]*?), or None for [^,;:]*", r"\1", plain)
     plain = re.sub(r"(--[\w-]+ must be )None \([^)]*\) or ", r"\1", plain)
     return re.sub("\0(\\d+)\0", lambda found: texts[int(found[1])], plain)
 

@@ -12,7 +12,7 @@ from delone._base.arrays import as_workers
 from delone._base.counting import counted, listed
 from delone._base.immutable import ReadOnly
 from delone._base.numbers import as_nonnegative
-from delone.errors import CrossingFacesError
+from delone.errors import CrossingFacesError, InputError
 from delone.solids.surface.check import as_faces
 
 if TYPE_CHECKING:
@@ -134,7 +134,7 @@ def imprint_surface(
         details are not much larger than the tolerance; the error contains the pairs of input faces.
         Also if parts of a closed surface are not closed; then each pair is one face, twice.
     InputError
-        `tolerance` is negative, infinite or NaN.
+        `tolerance` is negative, infinite or NaN, or no face is left because all are thinner.
     NonFiniteError, ShapeError, DtypeError, MemoryError
         As for `check_surface`.
 
@@ -181,6 +181,12 @@ def imprint_surface(
     made = _core.imprint_surface3(given, rows, margin, as_workers(workers))
     if len(made.crossing):
         raise _failure(made.crossing.astype(np.int64), made.tolerance, made.rounds)
+    if len(rows) and not len(made.faces):
+        extent = float(np.ptp(given[rows.ravel()], axis=0).max())
+        raise InputError(
+            f"tolerance={made.tolerance:g} leaves no face of the surface, which extends over "
+            f"{extent:g}: all are thinner"
+        )
     parts = np.bincount(made.source, minlength=len(rows))
     return ImprintedSurface(
         points=np.concatenate((given, made.added)),
