@@ -237,7 +237,11 @@ impl Lattice {
         let [a, m, b] = sorted.map(|[i, j]| [f64::from(i), f64::from(j)]);
         let above = (b[0] - a[0]) * (m[1] - a[1]) - (b[1] - a[1]) * (m[0] - a[0]) > 0.0;
         let at = |[u, v]: [Point2; 2], x: f64| u[1] + (x - u[0]) * (v[1] - u[1]) / (v[0] - u[0]);
-        for i in sorted[0][0]..=sorted[2][0] {
+        // A column with a single corner has no other node of the triangle.
+        let columns = sorted.map(|[i, _]| i);
+        let start = columns[0] + u32::from(columns[0] < columns[1]);
+        let stop = columns[2] + u32::from(columns[1] == columns[2]);
+        for i in start..stop {
             let x = f64::from(i);
             let bent = if x < m[0] || m[0] == b[0] {
                 [a, m]

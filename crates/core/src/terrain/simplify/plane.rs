@@ -25,6 +25,9 @@ const TINY: f64 = f64::from_bits((1023 - 800) << 52);
 const BITS: i32 = 53;
 const RANGE: i32 = 900;
 
+/// With fewer points than this, a maximum and a search take longer than comparisons.
+const SHORT: usize = 8;
+
 /// A point with its height.
 pub type Raised = [f64; 3];
 
@@ -164,9 +167,20 @@ impl Plane {
     #[inline]
     pub fn worst_of(&self, x: f64, y: &[f64], z: &[f64], least: f64) -> Option<(usize, f64)> {
         let mut most = least;
+        // A few points are compared one by one.
+        if z.len() < SHORT {
+            let mut at = None;
+            for (k, (&y, &z)) in y.iter().zip(z).enumerate() {
+                let offset = self.offset([x, y, z]);
+                // False for NaN.
+                if offset > most {
+                    (at, most) = (Some(k), offset);
+                }
+            }
+            return at.map(|k| (k, most));
+        }
         for (&y, &z) in y.iter().zip(z) {
             let offset = self.offset([x, y, z]);
-            // False for NaN.
             most = if offset > most { offset } else { most };
         }
         // The greatest offset rarely grows, so the point is searched only then.
