@@ -13,8 +13,8 @@
 //! is no longer than s; the crossing is a share of it. The share is s / (s - t), with the tests of the
 //! ends at the other side; they have opposite signs, so the share is as right as they are. A side
 //! longer than [`LONG`] s is tested with integers, and its terms are the products of its distance from
-//! the corner and of positions along it, which need no other place of it. So all errors are some
-//! 2^-100 of s^2, whatever the length of sides. On lines that are nearly parallel, a crossing errs
+//! the corner and of positions along it, which need no other place of it. So all errors are below
+//! 2^-90 of s^2, whatever the length of sides. On lines that are nearly parallel, a crossing errs
 //! along both, which changes the two terms alike; parallel lines do not cross, as one of them has
 //! moved.
 
