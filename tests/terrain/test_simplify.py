@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from delone import InputError
+from delone import DegenerateInputError, InputError
 from delone.interpolate import Grid
 from delone.io import LeftOutWarning
 from delone.terrain import TIN
@@ -231,6 +231,24 @@ def test_rasters_with_missing_nodes_are_simplified_as_their_points(step):
         order = [np.lexsort(tin.xyz.T) for tin in (found, other)]
         assert np.array_equal(found.xyz[order[0]], other.xyz[order[1]])
         assert max(distances(nodes, found)) <= error
+
+
+def test_surfaces_of_corners_alone_stay():
+    corners = [(0, 0, 1), (2, 0, 2), (2, 2, 5)]
+    for points in (corners, [*corners, (0, 2, 3)]):
+        tin = TIN.from_points(points)
+        assert rows(tin.simplify(max_error=0)) == rows(tin)
+    square = Grid(np.arange(4.0).reshape(2, 2), np.arange(2.0), np.arange(2.0))
+    assert TIN.from_raster(square, max_error=1).npoints == 4
+
+
+@pytest.mark.parametrize("goal", [{}, {"max_error": 1}, {"max_triangles": 9}])
+def test_nodes_on_one_line_are_all_named(goal):
+    raster = Grid(np.zeros((5, 4)), np.arange(4.0), np.arange(5.0))
+    for bounds, count in (((1, 1, 1, 3), 3), ((0, 2, 3, 2), 4)):
+        with pytest.raises(DegenerateInputError, match=f"all {count} distinct points") as caught:
+            TIN.from_raster(raster, bounds=bounds, planar=True, **goal)
+        assert caught.value.chain.tolist() == list(range(count))
 
 
 def test_files_of_rasters(tmp_path):

@@ -277,6 +277,9 @@ def ground_of_points(  # noqa: PLR0917
         fixed[_core.hull2(points)[0]] = True
     else:
         fixed[rim[_core.hull2(points[rim])[0]]] = True
+    if np.count_nonzero(fixed) < 3:
+        # On one line: the error names all of them.
+        fixed[:] = True
     none = np.empty((0, 2), dtype=np.int32)
     soft = np.empty(0, dtype=bool)
     rows = np.flatnonzero(fixed), np.flatnonzero(~fixed)

@@ -148,8 +148,11 @@ impl Edge {
 }
 
 impl Lattice {
-    /// The points as a lattice, if they fill half of the nodes of one.
+    /// The points as a lattice, if there are any, and they fill half of the nodes of one.
     pub fn of(task: &Task, watch: &Watch) -> Result<Option<Self>> {
+        if task.points.is_empty() {
+            return Ok(None);
+        }
         let mut pace = Pace::new(watch, LOT);
         let most = SPARSE * task.points.len() + MORE;
         let mut axes = [Axis::default(), Axis::default()];

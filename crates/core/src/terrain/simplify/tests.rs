@@ -114,6 +114,31 @@ fn lists_and_lattices_agree() {
 }
 
 #[test]
+fn a_surface_of_corners_alone_stays() {
+    let task = Task {
+        coarse: Given {
+            points: &[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+            simplices: &[[0, 1, 2]],
+            neighbors: &[[-1; 3]],
+        },
+        heights: &[0.0, 1.0, 5.0],
+        segments: &[],
+        triangles: 1,
+        points: &[],
+        z: &[],
+        max_error: 0.0,
+        max_triangles: usize::MAX,
+        workers: 1,
+    };
+    let found = simplify(task, &IDLE).unwrap();
+    assert!(found.order.is_empty());
+    assert_eq!(
+        (&found.errors[..], &found.triangles[..]),
+        (&[0.0][..], &[1][..])
+    );
+}
+
+#[test]
 fn nodes_with_rounded_coordinates_are_all_reached() {
     // Columns at decimals: every node counts, also those that rounding moves to the side of an edge.
     let found = run(|x, y| (x * y) % 7.0, 0.1, 0.0, usize::MAX);
