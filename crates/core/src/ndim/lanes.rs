@@ -133,7 +133,7 @@ pub fn lifted<const D: usize>(
         let size = square[l].sqrt();
         let slope = ROUNDED * (ROUNDED * norm[l] * squares[l].sqrt() + c * size);
         q0[l] = slope * size / 2.0 + LEAST_VALUE;
-        q1[l] = slope / (2.0 * size);
+        q1[l] = slope / (2.0 * size) + ROUNDED * c;
     }
     // If these are finite, so is x: its length is one of their factors.
     std::array::from_fn(|l| {

@@ -349,18 +349,27 @@ fn check_parts<const D: usize, const V: usize, const P: usize>() {
     let a: [[f64; P]; D] = std::array::from_fn(|i| minus(&v[i + 1], &v[0]));
     let test = Test::lifted(&a, Some([weight; D]));
     let size = test.x.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let slope = norm * (2.0 * d + 8.0) * U * sizes + (d + 5.0) * U * size;
-    about(2.0 * test.q0 / size, slope);
-    about(2.0 * test.q1 * size, slope);
-    let mut far = [0.0; P];
-    far[0] = 2.0;
-    about(test.value(&far, false).1, slope * (size + 4.0 / size) / 2.0);
+    let c = (d + 5.0) * U;
+    let slope = norm * (2.0 * d + 8.0) * U * sizes + c * size;
     let lanes = a.map(|row| std::array::from_fn(|k| [row[k]; LANES]));
-    for test in lanes::lifted(&lanes, Some(&[[weight; LANES]; D])) {
-        let test = test.unwrap();
+    let several = lanes::lifted(&lanes, Some(&[[weight; LANES]; D]));
+    for test in several.map(|test| test.unwrap()).into_iter().chain([test]) {
         about(2.0 * test.q0 / size, slope);
-        about(2.0 * test.q1 * size, slope);
+        about(2.0 * test.q1 * size, slope + 2.0 * c * size);
+        let mut far = [0.0; P];
+        far[0] = 2.0;
+        let bound = slope * (size + 4.0 / size) / 2.0 + 4.0 * c;
+        about(test.value(&far, false).1, bound);
     }
+    // Without weights, the sphere is large enough that the square of a point counts.
+    let plain = lanes::lifted(&lanes, None).map(|test| test.unwrap());
+    let size = step * d.sqrt();
+    let slope = norm * (2.0 * d + 8.0) * U * 2.0 * step * step + c * size;
+    for test in plain.into_iter().chain([Test::lifted(&a, None)]) {
+        about(2.0 * test.q0 / size, slope);
+        about(2.0 * test.q1 * size, slope + 2.0 * c * size);
+    }
+    let size = test.x.iter().map(|x| x * x).sum::<f64>().sqrt();
     let corners: [&[f64; P]; V] = std::array::from_fn(|i| &v[i]);
     let fine = Fine::<D>::lifted(&corners, [Pair::from_double(weight); D]);
     about(fine.error(), norm * (8.0 * d + 48.0) * U * U * sizes);
