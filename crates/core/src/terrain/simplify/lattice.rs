@@ -78,9 +78,9 @@ impl Axis {
         let [first, second, ..] = self.at[..] else {
             return self.at.len() == 1;
         };
-        let numbered = self.at.iter().enumerate();
+        let mut numbered = self.at.iter().enumerate();
         let even = |(k, x): (usize, &f64)| x - first == k as f64 * (second - first);
-        self.at.len() < MOST && numbered.map(even).all(|even| even)
+        self.at.len() < MOST && numbered.all(even)
     }
 
     /// The number of a coordinate.
