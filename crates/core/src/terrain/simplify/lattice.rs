@@ -6,8 +6,8 @@
 //!
 //! Where a column enters and leaves a triangle is estimated, and decided by the exact sides of nodes. If all
 //! steps are equal and sides are computed without rounding, vertices have whole numbers of columns and rows,
-//! and the quotient n / d at which an edge crosses a column needs no decision: with numbers below 2^20, it is
-//! a whole number or at least 2^-20 away from one, and its rounding error is below 2^-32.
+//! and the quotient n / d at which an edge crosses a column needs no decision: with numbers below 2^15, it is
+//! a whole number or at least 2^-15 away from one, and its rounding error is below 2^-37.
 
 use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 
@@ -23,8 +23,9 @@ const SPARSE: usize = 2;
 const MORE: usize = 64;
 /// Coordinates and heights up to this, 2^200, have offsets that are finite.
 const LARGEST: f64 = f64::from_bits((1023 + 200) << 52);
-/// The most columns or rows for which quotients decide.
-const MOST: usize = 1 << 20;
+/// The most columns, and the most rows. They are kept in order as they are found, so the time for many in
+/// random order is quadratic; and fewer than 2^32 nodes have numbers.
+const MOST: usize = 1 << 15;
 /// Points between two checks for interruption.
 const LOT: usize = 1 << 16;
 
@@ -80,7 +81,7 @@ impl Axis {
         };
         let mut numbered = self.at.iter().enumerate();
         let even = |(k, x): (usize, &f64)| x - first == k as f64 * (second - first);
-        self.at.len() < MOST && numbered.all(even)
+        numbered.all(even)
     }
 
     /// The number of a coordinate.
@@ -171,7 +172,8 @@ impl Lattice {
             for k in 0..2 {
                 last[k] = axes[k].take(p[k], last[k])?;
             }
-            if axes[0].at.len() * axes[1].at.len() > most {
+            let [across, along] = [0, 1].map(|k| axes[k].at.len());
+            if across.max(along) > MOST || across * along > most {
                 return Ok(None);
             }
         }

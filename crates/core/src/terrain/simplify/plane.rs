@@ -94,7 +94,7 @@ pub fn is_exact(
         return false;
     }
     let (least, width) = (2 * low + rise, 2 * k + m + 3);
-    width <= BITS && least > -RANGE && least + width < RANGE
+    width <= BITS && least.min(2 * low) > -RANGE && least + width < RANGE
 }
 
 /// The plane of a triangle.
@@ -166,29 +166,14 @@ impl Plane {
     /// `least`; heights that are NaN belong to no point.
     #[inline]
     pub fn worst_of(&self, x: f64, y: &[f64], z: &[f64], least: f64) -> Option<(usize, f64)> {
-        let mut most = least;
-        // A few points are compared one by one.
-        if z.len() < SHORT {
-            let mut at = None;
-            for (k, (&y, &z)) in y.iter().zip(z).enumerate() {
-                let offset = self.offset([x, y, z]);
-                // False for NaN.
-                if offset > most {
-                    (at, most) = (Some(k), offset);
-                }
-            }
-            return at.map(|k| (k, most));
+        if !self.exact {
+            return first_greatest(y, z, least, |y, z| self.offset([x, y, z]));
         }
-        for (&y, &z) in y.iter().zip(z) {
-            let offset = self.offset([x, y, z]);
-            most = if offset > most { offset } else { most };
-        }
-        // The greatest offset rarely grows, so the point is searched only then.
-        if most > least {
-            let is_it = |(&y, &z): (&f64, &f64)| self.offset([x, y, z]) == most;
-            return y.iter().zip(z).position(is_it).map(|k| (k, most));
-        }
-        None
+        // As in `offset`, without what is the same for all.
+        let [ox, oy, oz] = self.origin;
+        let (w, across, b) = (self.w, self.a * (x - ox), self.b);
+        let offset = |y: f64, z: f64| (w * (z - oz) - (across + b * (y - oy))).abs();
+        first_greatest(y, z, least, offset)
     }
 
     /// At least |n| / w, for a bound on |n|.
@@ -212,4 +197,39 @@ impl Plane {
         }
         f64::INFINITY
     }
+}
+
+/// The first of the greatest offsets of points, and its number, if it is greater than `least`. Offsets that
+/// are NaN do not count.
+#[inline(always)]
+fn first_greatest(
+    y: &[f64],
+    z: &[f64],
+    least: f64,
+    offset: impl Fn(f64, f64) -> f64,
+) -> Option<(usize, f64)> {
+    let mut most = least;
+    // A few points are compared one by one.
+    if z.len() < SHORT {
+        let mut at = None;
+        for (k, (&y, &z)) in y.iter().zip(z).enumerate() {
+            let offset = offset(y, z);
+            if offset > most {
+                (at, most) = (Some(k), offset);
+            }
+        }
+        return at.map(|k| (k, most));
+    }
+    for (&y, &z) in y.iter().zip(z) {
+        let offset = offset(y, z);
+        most = if offset > most { offset } else { most };
+    }
+    if most > least {
+        // The greatest offset rarely grows, so the point is searched only then.
+        let mut all = y.iter().zip(z);
+        return all
+            .position(|(&y, &z)| offset(y, z) == most)
+            .map(|k| (k, most));
+    }
+    None
 }

@@ -185,3 +185,28 @@ fn errors_reach_the_bound_and_triangles_their_limit() {
         );
     }
 }
+
+#[test]
+fn many_columns_in_random_order_are_scattered_points() {
+    // One row of more nodes than a lattice may have columns.
+    let n = 1_u32 << 16;
+    let points: Vec<_> = (0..n).map(|k| [f64::from(k * 40_503 % n), 1.0]).collect();
+    let last = f64::from(n);
+    let task = Task {
+        coarse: Given {
+            points: &[[-1.0, 0.0], [last, 0.0], [last, 2.0], [-1.0, 2.0]],
+            simplices: &[[0, 1, 2], [0, 2, 3]],
+            neighbors: &[[-1, 1, -1], [-1, -1, 0]],
+        },
+        heights: &[0.0; 4],
+        segments: &[],
+        triangles: 2,
+        points: &points,
+        z: &vec![0.0; points.len()],
+        max_error: 0.0,
+        max_triangles: usize::MAX,
+        workers: 1,
+    };
+    assert!(Lattice::of(&task, &IDLE).unwrap().is_none());
+    assert!(simplify(task, &IDLE).unwrap().order.is_empty());
+}
