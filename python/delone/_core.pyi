@@ -147,6 +147,7 @@ __all__ = [
     "ring2",
     "simplify2",
     "sizes",
+    "smallest_angle2",
     "smooth2",
     "smooth3",
     "spanning",
@@ -2309,6 +2310,11 @@ def sizes(
     points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
 ) -> NDArray[np.float64]:
     """The areas of triangles, or the volumes of simplices of more dimensions."""
+
+def smallest_angle2(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> float:
+    """The smallest angle of all triangles in degrees, 180 if there are none."""
 
 def smooth2(
     points: NDArray[np.float64],

@@ -12,7 +12,14 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from delone import _core
-from delone._base.arrays import as_neighbors, as_points, as_simplices, require_finite
+from delone._base.arrays import (
+    as_mesh,
+    as_neighbors,
+    as_points,
+    as_simplices,
+    as_workers,
+    require_finite,
+)
 from delone._base.immutable import ReadOnly
 from delone._tiling.higher import topology as higher
 from delone._tiling.higher.dimension import MOST
@@ -303,6 +310,11 @@ def judged(points: Floats, simplices: Indices, neighbors: Indices) -> Validation
     """Check arrays that are known to fit together."""
     report = {2: ValidationReport, 3: SpaceReport}.get(points.shape[1], HigherReport)
     return report._of(_core.validate(points, simplices, neighbors))
+
+
+def smallest_angle(points: Floats, simplices: Indices) -> float:
+    """Return the smallest angle of counterclockwise triangles in degrees, 180 if there are none."""
+    return _core.smallest_angle2(*as_mesh(points, simplices), as_workers(None))
 
 
 def not_across(

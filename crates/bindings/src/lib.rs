@@ -103,7 +103,7 @@ mod _core {
     #[pymodule_export]
     use super::measure::{
         around, below2, circumcenters, dihedral_angles3, edges, face_areas3, face_normals3, faces3,
-        qualities, sizes, transforms,
+        qualities, sizes, smallest_angle2, transforms,
     };
     #[pymodule_export]
     use super::ndim::{

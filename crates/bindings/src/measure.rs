@@ -174,6 +174,17 @@ pub fn qualities(
     Ok(found.into_iter().map(|values| column(py, values)).collect())
 }
 
+/// The smallest angle of all triangles in degrees, 180 if there are none.
+#[pyfunction]
+pub fn smallest_angle2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    workers: usize,
+) -> Outcome<f64> {
+    measured(py, &points, &simplices, workers, measure::smallest_angle)
+}
+
 /// The dihedral angles of tetrahedra at the edges 01, 02, 03, 12, 13 and 23.
 #[pyfunction]
 pub fn dihedral_angles3(

@@ -1,8 +1,7 @@
 """The figures of a triangulation, as plain numbers for JSON.
 
 Counts are taken from the arrays, not from formulas, so that comparing them with 2n - h - 2 and 3n -
-h - 3 is meaningful. Triangles are processed in blocks, so that little memory is needed in addition
-to the triangulation, whatever its size.
+h - 3 is meaningful.
 """
 
 from __future__ import annotations
@@ -15,9 +14,10 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from delone import ConstrainedDelaunay, Quality
+from delone import ConstrainedDelaunay
 from delone import Mesh as QualityMesh
 from delone.predicates import orient2d
+from delone.validation import smallest_angle
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Stopwatch", "finite_or_none", "geometry", "peak_memory", "repeated_rows", "summary"]
 
-_BLOCK = 1 << 20
 _FIRST_DUPLICATES = 5
 
 
@@ -112,15 +111,6 @@ def geometry(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> dict[
         "triangles": len(simplices),
         "smallest_angle_degrees": finite_or_none(smallest_angle(points, turned)),
     }
-
-
-def smallest_angle(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> float:
-    """Return the smallest angle of counterclockwise triangles in degrees, 180 if there are none."""
-    smallest = 180.0
-    for start in range(0, len(simplices), _BLOCK):
-        angles = Quality.of(points, simplices[start : start + _BLOCK]).smallest_angle
-        smallest = min(smallest, float(np.nanmin(angles, initial=smallest)))
-    return smallest
 
 
 def _is_whole(triangulation: Mesh) -> bool:

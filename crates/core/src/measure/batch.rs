@@ -6,7 +6,7 @@ use crate::base::parallel;
 use crate::base::watch::Watch;
 
 /// Simplices per task.
-const SHARE: usize = 1 << 14;
+pub(super) const SHARE: usize = 1 << 14;
 /// Simplices whose corners are gathered before the first of them is measured: the loads are
 /// independent.
 const BATCH: usize = 64;

@@ -125,6 +125,12 @@ impl<const D: usize, const N: usize> Corners<D, N> {
         Self { points, rounded }
     }
 
+    /// The vectors rounded, in a unit of their own; `None` if products of them may lose digits.
+    #[inline]
+    pub(super) fn rounded(&self) -> Option<&[[f64; D]; D]> {
+        (product_of_lengths(&self.rounded.to) > TINY).then_some(&self.rounded.to)
+    }
+
     /// The measure, by the first stage that is accurate.
     #[inline]
     pub fn measure<M: Measure<D>>(&self, measure: &M) -> M::Out {

@@ -26,4 +26,4 @@ pub use size::{areas, face_areas, face_normals, volumes};
 pub(crate) use skeleton::{Buckets, distinct};
 pub use skeleton::{around, edges, edges2, faces3};
 pub use tetrahedron::{dihedral_angles, qualities3};
-pub use triangle::{below, is_below, qualities2};
+pub use triangle::{below, is_below, qualities2, smallest_angle};

@@ -2,14 +2,21 @@
 
 use num_bigint::{BigInt, Sign};
 
-use super::batch::{columns, each};
+use super::batch::{SHARE, columns, each};
 use super::corners::{Corners, Integers, Measure, Number, Vectors, determinant2, in_units};
 use crate::base::error::Result;
+use crate::base::parallel::map_watched;
 use crate::base::watch::Watch;
 use crate::base::wide::{angle, lowest, ratio, root, scaled};
 
 /// Squares whose relative difference is smaller are compared exactly: about eight roundings each.
 const UNSURE: f64 = 1e-13;
+/// How much larger than the smallest tangent so far a rounded one must be to be larger for sure:
+/// inner products and tangents have relative errors of a few roundings.
+const MARGIN: f64 = 1e-9;
+/// Bounds the error of twice an area, as a share of the product of two sides: 2^-46, where four
+/// roundings of such products are 2^-51.
+const AREA_ERROR: f64 = f64::from_bits((1023 - 46) << 52);
 
 /// For each triangle the smallest and the largest angle in degrees, the area, twice the inradius
 /// over the circumradius, and the longest over the shortest edge.
@@ -21,6 +28,71 @@ pub fn qualities2(
 ) -> Result<[Vec<f64>; 5]> {
     let quality = |corners| Corners::new(corners).measure(&Quality);
     columns(points, simplices, workers, watch, quality)
+}
+
+/// The smallest angle of all triangles in degrees, 180 if there are none: the least first number of
+/// [`qualities2`].
+pub fn smallest_angle(
+    points: &[[f64; 2]],
+    simplices: &[[i32; 3]],
+    workers: usize,
+    watch: &Watch,
+) -> Result<f64> {
+    let shares = simplices.chunks(SHARE).collect();
+    let least = map_watched(workers, shares, watch, |share| {
+        let mut least = Least::new(180.0);
+        for simplex in share {
+            least.add(simplex.map(|v| points[v as usize]));
+        }
+        Ok(least.degrees)
+    })?;
+    Ok(least.into_iter().fold(180.0, f64::min))
+}
+
+/// The smallest angle so far.
+struct Least {
+    degrees: f64,
+    /// Its tangent with a margin, infinite for right and obtuse angles.
+    tangent: f64,
+}
+
+impl Least {
+    fn new(degrees: f64) -> Self {
+        let tangent = if degrees < 89.0 {
+            degrees.to_radians().tan() * (1.0 + MARGIN)
+        } else {
+            f64::INFINITY
+        };
+        Self { degrees, tangent }
+    }
+
+    /// Takes the smallest angle of one more triangle into account.
+    #[inline]
+    fn add(&mut self, corners: [[f64; 2]; 3]) {
+        let corners = Corners::new(corners);
+        // Most triangles need no angle, and no more digits.
+        if corners
+            .rounded()
+            .is_some_and(|sides| is_blunter(sides, self.tangent))
+        {
+            return;
+        }
+        let [found, ..] = corners.measure(&Quality);
+        if found < self.degrees {
+            *self = Self::new(found);
+        }
+    }
+}
+
+/// Whether the smallest angle of a triangle, given by its rounded vectors, surely has a larger tangent.
+/// It is at the corner with the largest inner product, at which no digits cancel.
+#[inline]
+fn is_blunter(&[a, b]: &[[f64; 2]; 2], tangent: f64) -> bool {
+    let c = [b[0] - a[0], b[1] - a[1]];
+    let dot = |p: [f64; 2], q: [f64; 2]| p[0] * q[0] + p[1] * q[1];
+    let (_, most) = ends([dot(a, b), -dot(a, c), dot(b, c)]);
+    let error = AREA_ERROR * (dot(a, a) * dot(b, b)).sqrt();
+    determinant2(&[a, b]) - error > tangent * most
 }
 
 struct Quality;
@@ -162,6 +234,46 @@ fn ends([a, b, c]: [f64; 3]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_smallest_angle_is_the_least_of_all_qualities() {
+        let mut state = 7_u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 33) as f64 / f64::from(1 << 30) / 2.0
+        };
+        let mut sharp = 0;
+        for round in 0..60 {
+            // Triangles of all shapes: the third corner is near the line through the others, as near
+            // as a few units in the last place, and the unit is small, large, or beyond squares.
+            let unit = 2.0_f64.powi([0, -1000, 900, -300, 30][round % 5]);
+            let (mut points, mut simplices) = (Vec::new(), Vec::new());
+            for t in 0..3 * SHARE as i32 / 2 {
+                let [a, b] = [[random(), random()], [random(), random()]];
+                let (share, aside) = (random(), 2.0_f64.powi(-(round as i32 % 12) * 4) * random());
+                let c = [0, 1].map(|k| a[k] + share * (b[k] - a[k]));
+                let c = [c[0] - aside * (b[1] - a[1]), c[1] + aside * (b[0] - a[0])];
+                if delone_predicates::orient2d(a, b, c) == delone_predicates::Sign::Positive {
+                    let first = points.len() as i32;
+                    let turn = t % 3;
+                    points.extend([a, b, c].map(|p| p.map(|x| x * unit)));
+                    simplices.push([0, 1, 2].map(|k| first + (k + turn) % 3));
+                }
+            }
+            let watch = Watch::idle();
+            let all = qualities2(&points, &simplices, 1, &watch).unwrap();
+            let least = all[0].iter().copied().fold(180.0, f64::min);
+            sharp += usize::from(least < 1e-6);
+            for workers in [1, 3] {
+                let found = smallest_angle(&points, &simplices, workers, &watch).unwrap();
+                assert_eq!(found, least, "round {round}");
+            }
+        }
+        assert!(sharp > 10);
+        assert_eq!(smallest_angle(&[], &[], 1, &Watch::idle()).unwrap(), 180.0);
+    }
 
     #[test]
     fn the_stages_agree_where_all_are_accurate() {
